@@ -1,0 +1,22 @@
+# cmake -DPREFIX=<family> -DNAMESPACE=<C++ namespace> -DOUTPUT=<file.cpp> -DFILES=<a|b|...> -P embed_shaders.cmake
+# Writes a C++ file that holds GLSL files as {"<prefix>/<file name>", text}.
+string(REPLACE "|" ";" files "${FILES}")
+set(text "// Generated from GLSL files; do not edit.\n#include \"volmark/gpu/shader.h\"\n\n#include <vector>\n\n")
+string(APPEND text "namespace ${NAMESPACE} {\nextern const std::vector<volmark::gpu::EmbeddedShader> shaders;\n")
+string(APPEND text "const std::vector<volmark::gpu::EmbeddedShader> shaders = {\n")
+foreach(file IN LISTS files)
+  get_filename_component(name "${file}" NAME)
+  file(READ "${file}" content)
+  string(APPEND text "    {\"${PREFIX}/${name}\",\n")
+  # Compilers limit the length of one literal: adjacent literals, a part of at most 8000 characters each.
+  string(LENGTH "${content}" length)
+  set(begin 0)
+  while(begin LESS length)
+    string(SUBSTRING "${content}" ${begin} 8000 part)
+    string(APPEND text "R\"glsl(${part})glsl\"\n")
+    math(EXPR begin "${begin} + 8000")
+  endwhile()
+  string(APPEND text "    },\n")
+endforeach()
+string(APPEND text "};\n} // namespace ${NAMESPACE}\n")
+file(WRITE "${OUTPUT}" "${text}")

@@ -1,0 +1,81 @@
+// scenes/<name>.json: where a volume comes from and how it is looked at.
+#pragma once
+
+#include "scenario/strict_json.h"
+#include "volmark/scene.h"
+#include "volume/generators/generator.h"
+#include "volume/raw.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace volmark {
+
+/// "normalized" or "raw" (the data's unit).
+struct Isovalue {
+  bool raw = false;
+  double value = 0.5;
+};
+
+/// How the camera sees the volume, in the volume's own axes.
+struct Framing {
+  glm::dvec3 up{0, 1, 0};         ///< axis of the orbit
+  glm::dvec3 front{0, 0, 1};      ///< from the centre towards the camera at azimuth 0; orthogonal to up
+};
+
+struct GeneratorSource {
+  GeneratorSettings settings;
+};
+struct FileSource {
+  std::string file;               ///< looked for beside the scene file, then in the data folders
+};
+struct RawSource {
+  std::string file;
+  RawDescription description;
+};
+
+struct SceneDescription {
+  std::string name;
+  std::string title;
+  std::filesystem::path path;     ///< of the scene file; empty for a scene made from a bare volume file
+  std::variant<GeneratorSource, FileSource, RawSource> source;
+  std::string fetchHint;          ///< how to get a missing file: "scenes/fetch.py cranium_ct"
+  std::string license;
+  std::optional<Range> visualisationRange;             ///< data's unit
+  std::vector<std::pair<std::string, Isovalue>> isovalues;             ///< in file order; the first is default
+  std::vector<std::pair<std::string, TransferFunction>> transferFunctions;
+  Framing framing;
+  Light light;
+  nlohmann::json document;        ///< as read; part of the point's identity where it bears on the picture
+};
+
+/// Folders that are searched for volumes: --data, then VOLMARK_DATA (':'-separated), then <scenes>/data.
+struct DataFolders {
+  std::vector<std::filesystem::path> folders;
+};
+
+/// Reads and checks a scene file. Throws InputError.
+SceneDescription readScene(const std::filesystem::path& path);
+
+/// Parses {"normalized": x} or {"raw": x}. Throws InputError.
+Isovalue parseIsovalue(const JsonValue& value);
+/// Parses {"points": [{"value","color","opacity"}...]}. Throws InputError.
+TransferFunction parseTransferFunction(const std::string& name, const JsonValue& value);
+Light parseLight(const JsonValue& value);
+
+/// A scene around a bare volume file: one isovalue (normalised 0.5), a default transfer function "ramp".
+SceneDescription sceneForFile(const std::filesystem::path& volume);
+
+/// Loads or generates the volume. Throws InputError: missing file (names the folders searched and the fetch
+/// hint), bad header, over `maximumBytes`.
+std::shared_ptr<const Volume> openVolume(const SceneDescription& scene, const DataFolders& data,
+                                         std::uint64_t maximumBytes);
+
+/// Where the volume's file is, if it has one and it is there.
+std::optional<std::filesystem::path> findVolumeFile(const SceneDescription& scene, const DataFolders& data);
+
+} // namespace volmark

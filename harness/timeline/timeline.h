@@ -1,0 +1,43 @@
+// What each frame is given: camera, isovalue, transfer function, clipping planes, time step, light.
+#pragma once
+
+#include "scenario/point.h"
+
+namespace volmark {
+
+/// A function of phase in [0,1] over one pass (orbit). Pure: equal phases give equal inputs.
+class Timeline {
+public:
+  Timeline(const PointSettings& settings, const Scene& scene);
+
+  FrameInputs at(double phase) const;
+  /// What a technique is told between two frames.
+  Changes between(double previousPhase, double phase) const;
+
+  /// Phase of frame i of n equal steps: i/n for orbits (the last frame is one step before the first), i/(n-1)
+  /// for key poses and sweeps that end.
+  double phaseOf(int frame, int frames) const;
+
+private:
+  Pose poseAt(double phase) const;
+
+  TimelineSettings m_settings;
+  CameraSettings m_camera;
+  StereoSettings m_stereo;
+  Framing m_framing;
+  Frustum m_frustum;
+  double m_distanceMm = 0;
+  double m_isovalueFrom = 0;
+  double m_isovalueTo = 0;
+  int m_timeSteps = 1;
+  std::shared_ptr<const TransferFunction> m_transferFunction;
+  Light m_light;
+};
+
+/// The Scene that a technique is prepared with.
+Scene makeScene(const PointSettings& settings, std::shared_ptr<const Volume> volume);
+
+/// The isovalue, normalised over the scene's visualisation range.
+double normalisedIsovalue(const Isovalue& isovalue, const Scene& scene);
+
+} // namespace volmark
