@@ -1,0 +1,116 @@
+"""python3 -m volmark_analysis: reports, tables, plots and comparisons from an experiment folder."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from . import comparisons, plots, report, tables
+from .errors import InputError
+from .load import load_experiment
+from .points import point_results
+
+_EPILOG = """examples:
+  python3 -m volmark_analysis report results/quick
+  python3 -m volmark_analysis table results/quick --format tex > quick.tex
+  python3 -m volmark_analysis table results/quick --columns technique,step,mean_ms,psnr_db,counter.samples
+  python3 -m volmark_analysis plots results/quick
+  python3 -m volmark_analysis compare results/quick --a technique=iso_raymarch --b technique=iso_octree
+  python3 -m volmark_analysis compare results/quick --a step=0.5 --b step=1.0
+
+DIR is an experiment folder: the one with experiment.json and runs/. Unusable input gives one line and exit code 2.
+The statistics are defined in harness/README.md, section 6, and at the end of every report."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    options = _parser().parse_args(arguments)
+    try:
+        options.run(options)
+    except InputError as error:
+        print(f"volmark_analysis: {error}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:  # `| head`
+        sys.stderr.close()
+        return 0
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python3 -m volmark_analysis", description=__doc__, epilog=_EPILOG,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def command(name, run, text, more=""):
+        sub = commands.add_parser(name, help=text, description=f"{text}. {more}".strip(),
+                                  formatter_class=argparse.RawDescriptionHelpFormatter)
+        sub.add_argument("folder", metavar="DIR", type=Path, help="experiment folder, e.g. results/quick")
+        sub.set_defaults(run=run)
+        return sub
+
+    sub = command("report", _report, "write report.html, tables/ and plots/ into the experiment folder",
+                  "The page is one file without references to others: it can be mailed or published as it is.")
+    sub.add_argument("-o", "--output", type=Path, metavar="FILE", help="where the page goes (default: DIR/report.html)")
+    _add_low1(sub)
+    sub = command("table", _table, "print the results, one row per point",
+                  "A time always comes with an error: psnr_db is added beside it if you choose none.")
+    sub.add_argument("--format", choices=tuple(tables.WRITERS), default="md",
+                     help="Markdown, LaTeX (booktabs) or CSV (default: md)")
+    sub.add_argument("--columns", metavar="NAME,NAME...",
+                     help="labels, statistics, errors, counter.<name>, pass.<name>; a wrong name lists all")
+    _add_low1(sub)
+    command("plots", _plots, "write plots/ (svg and png) into the experiment folder")
+    sub = command("compare", _compare, "ratio of frame times of two selections, pose by pose",
+                  "Results of A and B are paired when they agree on all labels that neither selection names.")
+    for side in ("a", "b"):
+        sub.add_argument(f"--{side}", action="append", required=True, metavar="LABEL=VALUE",
+                         help="may be repeated, or joined by commas")
+    return parser
+
+
+def _add_low1(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("--low1", choices=tuple(tables.LOW1_NAMES), default="low1_avg_ms",
+                     help="which statistic of slow frames is shown (default: low1_avg_ms)")
+
+
+def _load(options):
+    experiment = load_experiment(options.folder)
+    return experiment, point_results(experiment)
+
+
+def _report(options) -> None:
+    experiment, results = _load(options)
+    path = options.output or experiment.folder / "report.html"
+    report.write_report(experiment, results, path, options.low1)
+    print(path)
+
+
+def _table(options) -> None:
+    experiment, results = _load(options)
+    columns = [c.strip() for c in options.columns.split(",")] if options.columns else None
+    table = tables.results_table(experiment, results, options.low1, columns)
+    sys.stdout.write(tables.WRITERS[options.format](table))
+
+
+def _plots(options) -> None:
+    experiment, results = _load(options)
+    folder = experiment.folder / "plots"
+    try:
+        names = plots.write_plots(folder, results)
+    except OSError as error:
+        raise InputError(f"{error.filename or folder}: can't be written ({error.strerror or error})") from None
+    if not names:
+        raise InputError(f"{experiment.folder}: no run completed, nothing to plot")
+    for name in names:
+        print(folder / f"{name}.svg")
+
+
+def _compare(options) -> None:
+    _, results = _load(options)
+    a = comparisons.parse_selection(options.a, results, "--a")
+    b = comparisons.parse_selection(options.b, results, "--b")
+    sys.stdout.write(comparisons.to_markdown(comparisons.selection_comparisons(results, a, b)))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
