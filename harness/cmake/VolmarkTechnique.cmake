@@ -18,10 +18,11 @@ function(volmark_embed_shaders target prefix namespace)
   target_sources(${target} PRIVATE ${output})
 endfunction()
 
-# volmark_add_technique(<family> SOURCES <cpp>... [SHADERS <glsl>...]): a loadable module of techniques.
-# Inside the project it goes to <build>/techniques; with find_package(volmark) to the current binary folder.
+# volmark_add_technique(<family> [TEST_ONLY] SOURCES <cpp>... [SHADERS <glsl>...]): a loadable module of
+# techniques. Inside the project it goes to <build>/techniques (TEST_ONLY: <build>/tests/techniques, and is not
+# installed); with find_package(volmark) to the current binary folder.
 function(volmark_add_technique family)
-  cmake_parse_arguments(arg "" "" "SOURCES;SHADERS" ${ARGN})
+  cmake_parse_arguments(arg "TEST_ONLY" "" "SOURCES;SHADERS" ${ARGN})
   add_library(${family} MODULE ${arg_SOURCES})
   set_target_properties(${family} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_compile_features(${family} PRIVATE cxx_std_20)
@@ -30,8 +31,11 @@ function(volmark_add_technique family)
   volmark_embed_shaders(${family} ${family} volmark_embedded ${arg_SHADERS})
   if(COMMAND volmark_compile_options)
     volmark_compile_options(${family})
-    set_target_properties(${family} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/techniques)
-    if(NOT arg_UNPARSED_ARGUMENTS MATCHES "TEST_ONLY")
+    if(arg_TEST_ONLY)
+      set_target_properties(${family} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/techniques)
+    else()
+      set_target_properties(${family} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/techniques
+                                                 INSTALL_RPATH "$ORIGIN/../..")
       install(TARGETS ${family} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/volmark/techniques)
     endif()
   endif()

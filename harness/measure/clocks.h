@@ -7,14 +7,14 @@
 
 namespace volmark {
 
-double monotonicMs();             ///< CLOCK_MONOTONIC
-double processCpuMs();            ///< CLOCK_PROCESS_CPUTIME_ID: all threads of this process
+double monotonicMs();  ///< CLOCK_MONOTONIC
+double processCpuMs(); ///< CLOCK_PROCESS_CPUTIME_ID: all threads of this process
 
 /// Totals since the process (or machine) started. Fields that the system does not offer stay 0.
 struct DisturbanceCounters {
-  std::uint64_t involuntarySwitches = 0;       ///< of all threads: getrusage(RUSAGE_SELF).ru_nivcsw
-  std::uint64_t pressureUs = 0;                ///< /proc/pressure/cpu, some, total
-  std::uint64_t stealTicks = 0;                ///< /proc/stat, cpu, steal
+  std::uint64_t involuntarySwitches = 0; ///< of all threads: getrusage(RUSAGE_SELF).ru_nivcsw
+  std::uint64_t pressureUs = 0;          ///< /proc/pressure/cpu, some, total
+  std::uint64_t stealTicks = 0;          ///< /proc/stat, cpu, steal
 };
 
 /// Reads the counters; keeps the files open, so that a read costs microseconds.

@@ -1,69 +1,60 @@
 // results/<experiment>/: where runs are found, claimed, written and counted.
 #pragma once
 
+#include "results/claim.h"
+#include "results/hash.h"
 #include "results/records.h"
 #include "scenario/scenario.h"
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace volmark {
 
-/// What names a run: see harness/README.md, Results.
-struct RunIdentity {
-  std::string point;        ///< hash
-  std::string run;          ///< hash of point, build, device and replicate
-  int replicate = 0;
-};
-
-/// 32 hex digits (XXH3-128) of the canonical point configuration and the volume's identity.
-std::string pointHash(const nlohmann::json& config, const std::string& volumeIdentity);
-std::string runHash(const std::string& point, const std::string& build, const std::string& device, int replicate);
-
-/// Exclusive right to write one run. Released (file removed) on destruction.
-class Claim {
-public:
-  ~Claim();
-  Claim(const Claim&) = delete;
-  Claim& operator=(const Claim&) = delete;
-  void beat();              ///< refreshes the heartbeat; call at least every 10 s
-
-private:
-  friend class Experiment;
-  explicit Claim(std::filesystem::path file) : m_file(std::move(file)) {}
-  std::filesystem::path m_file;
-};
-
 class Experiment {
 public:
-  /// Creates or reopens results/<name>/ and writes experiment.json. Throws InputError when the folder can't
-  /// be written or belongs to a format version or scenario name that doesn't fit; leaves nothing half-made.
+  /// Creates or reopens results/<name>/ and writes experiment.json. The scenario of an existing experiment may
+  /// have changed (grids grow). Throws InputError when the folder can't be written or holds another format
+  /// version or another experiment; leaves nothing half-made.
   Experiment(const std::filesystem::path& resultsFolder, const Scenario& scenario);
+  /// For workers: the folder of an experiment that the runner has opened; commits, but writes no index.
+  explicit Experiment(std::filesystem::path folder) : m_folder(std::move(folder)) {}
 
   const std::filesystem::path& folder() const { return m_folder; }
-  std::filesystem::path runFolder(const RunIdentity& identity) const;      ///< runs/<2 hex>/<hash>
+  std::filesystem::path runFolder(const RunIdentity& identity) const; ///< runs/<2 hex>/<hash>
 
-  /// run.json is there and readable: its status. Absent: not done.
+  /// run.json is there and readable: its status. Absent: not done. Throws InputError for another format version.
   std::optional<std::string> statusOf(const RunIdentity& identity) const;
 
-  /// Nothing if another live process has the run (a claim whose heartbeat is older than 60 s, or whose pid on
-  /// this host is gone, is taken over).
+  /// Nothing if another live process has the run (see Claim). Throws DeviceError if it can't be written.
   std::unique_ptr<Claim> claim(const RunIdentity& identity) const;
 
-  /// An empty staging folder for a run's files; leftovers of an earlier attempt are removed.
+  /// Removes a claim that a dead process left beside a run that is done.
+  void releaseStaleClaim(const RunIdentity& identity) const;
+
+  /// An empty staging folder for a run's files, runs/<2 hex>/.<run>.<pid>; leftovers of earlier attempts are
+  /// removed. Only whoever has the claim may call this. Throws DeviceError.
   std::filesystem::path stage(const RunIdentity& identity) const;
 
-  /// Writes frames.csv, counters.csv, pictures.csv and run.json into the staging folder, then makes it the
-  /// run's folder: run.json appears last, by atomic rename.
+  /// Removes what an interrupted run has staged. Only whoever has the claim may call this.
+  void discard(const RunIdentity& identity) const;
+
+  /// Writes frames.csv, counters.csv, pictures.csv and run.json into the staging folder, waits until all its
+  /// files are on disk, then makes it the run's folder by one rename, in place of an earlier attempt. Uses the
+  /// staging folder of this process or, if it has none, one that a dead worker left (its log.txt stays). A run
+  /// that isn't completed keeps no pictures. Throws DeviceError (disk full...) and leaves no staging folder then.
   void commit(const RunIdentity& identity, const Point& point, const CatalogueEntry& technique,
               const RunRecord& record) const;
 
-  /// Rebuilds index.csv and google_benchmark.json from the runs that are there.
+  /// Rebuilds index.csv and google_benchmark.json from the runs that are there. Throws DeviceError, and
+  /// InputError for a run of another format version.
   void writeIndex() const;
 
 private:
   std::filesystem::path m_folder;
+  std::vector<std::string> m_axes;
 };
 
 } // namespace volmark

@@ -24,17 +24,17 @@ enum class OrbitKind { warmUp, headline, breakdown };
 struct FrameRow {
   OrbitKind orbitKind = OrbitKind::headline;
   int orbit = 0;
-  int frame = 0;               ///< within the orbit
-  double phase = 0;            ///< place on the timeline, [0,1]
-  double hostMs = 0;           ///< host clock: start of update to completion
-  double intervalMs = 0;       ///< between completions
-  double cpuMs = 0;            ///< process CPU
+  int frame = 0;         ///< within the orbit
+  double phase = 0;      ///< place on the timeline, [0,1]
+  double hostMs = 0;     ///< host clock: start of update to completion
+  double intervalMs = 0; ///< between completions
+  double cpuMs = 0;      ///< process CPU
   double updateMs = 0;
   double drawMs = 0;
-  double frameMs = 0;          ///< updateMs + drawMs
-  double gpuMs = 0;            ///< first stamp to last; NaN without a GPU
-  std::string disturbed;       ///< empty, or why
-  std::vector<PassTime> passes;      ///< breakdown orbits only
+  double frameMs = 0;           ///< updateMs + drawMs
+  double gpuMs = 0;             ///< first stamp to last; NaN without a GPU
+  std::string disturbed;        ///< empty, or why
+  std::vector<PassTime> passes; ///< breakdown orbits only
 };
 
 struct CounterRow {
@@ -44,36 +44,37 @@ struct CounterRow {
 };
 
 struct PictureRow {
-  int frame = 0;               ///< of the orbit
+  int frame = 0; ///< of the orbit
   double phase = 0;
   int view = 0;
-  std::string file;            ///< relative to the run's folder
-  std::string reference;       ///< "cpu" or "none"
-  std::string referenceFile;   ///< relative to the experiment's folder; empty without reference
+  std::string file;          ///< relative to the run's folder
+  std::string reference;     ///< "cpu" or "none"
+  std::string referenceFile; ///< relative to the experiment's folder; empty without reference
   PictureErrors errors;
-  double cumulativeMs = 0;     ///< visible history: sum of frame_ms since reset() up to this frame
+  double cumulativeMs = 0; ///< visible history: sum of frame_ms since reset() up to this frame
 };
 
 struct GenerationPass {
   std::string name;
   double hostMs = 0;
-  double gpuMs = 0;            ///< NaN for host passes
+  double gpuMs = 0; ///< NaN for host passes
 };
 
 /// Result of a check that the harness makes on every run.
 struct RunCheck {
-  std::string name;            ///< "timed_frame_equals_replay", "memory_equals_ledger", "stamps_ratio"
+  std::string name; ///< "timed_frame_equals_replay", "memory_equals_ledger", "stamps_ratio"
   bool passed = true;
   std::string detail;
 };
 
 enum class RunStatus { completed, failed, crashed, timedOut, unsupported, outOfMemory };
-std::string nameOf(RunStatus status);    ///< "completed", "failed", "crashed", "timed_out", "unsupported", "out_of_memory"
+RunStatus runStatusFromName(const std::string& name); ///< the inverse; `failed` for any other text
+std::string nameOf(RunStatus status); ///< "completed", "failed", "crashed", "timed_out", "unsupported", "out_of_memory"
 
 /// All that a worker hands to the writer.
 struct RunRecord {
   RunStatus status = RunStatus::completed;
-  std::string reason;                    ///< one line unless completed
+  std::string reason; ///< one line unless completed
   std::vector<FrameRow> frames;
   std::vector<CounterRow> counters;
   std::vector<PictureRow> pictures;
@@ -84,7 +85,7 @@ struct RunRecord {
   std::uint64_t ledgerBytes = 0;
   std::uint64_t ledgerPeakBytes = 0;
   std::vector<RunCheck> checks;
-  nlohmann::json provenance;             ///< results/provenance.h
+  nlohmann::json provenance; ///< results/provenance.h
 };
 
 } // namespace volmark

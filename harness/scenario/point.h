@@ -18,7 +18,7 @@ namespace volmark {
 
 struct CameraSettings {
   double verticalFovDegrees = 30;
-  std::optional<double> distanceMm;      ///< absent: "fit", the bounding sphere fills the smaller field of view
+  std::optional<double> distanceMm; ///< absent: "fit", the bounding sphere fills the smaller field of view
 };
 
 struct StereoSettings {
@@ -35,49 +35,50 @@ struct CameraPath {
   struct Key {
     double azimuthDegrees = 0;
     double elevationDegrees = 0;
-    double distanceScale = 1;            ///< of the camera distance
-    bool cut = false;                    ///< the camera jumps here instead of moving
+    double distanceScale = 1; ///< of the camera distance
+    bool cut = false;         ///< the camera jumps here instead of moving
   };
-  std::vector<Key> keys;                 ///< Kind::keys: at equal intervals, linear in between
+  std::vector<Key> keys; ///< Kind::keys: at equal intervals, linear in between
 };
 
 struct TimelineSettings {
   CameraPath camera;
-  std::optional<std::pair<Isovalue, Isovalue>> isovalueSweep;   ///< from, to: linear over the timeline
+  std::optional<std::pair<Isovalue, Isovalue>> isovalueSweep; ///< from, to: linear over the timeline
   std::vector<ClippingPlane> clippingPlanes;
-  bool playTimeSteps = false;                                   ///< all time steps once over the timeline
+  bool playTimeSteps = false; ///< all time steps once over the timeline
 };
 
 struct PacingSettings {
   enum class Mode { frames, timed } mode = Mode::frames;
-  int frames = 60;                ///< frames: equal steps of one pass over the timeline (an orbit)
-  int warmUpFrames = 3;           ///< frames: at least 3
-  int orbits = 3;                 ///< frames: timed passes over the timeline per process
-  double warmUpSeconds = 1;       ///< timed: and at least 3 frames
-  double seconds = 10;            ///< timed: length of the timeline
+  int frames = 60;          ///< frames: equal steps of one pass over the timeline (an orbit)
+  int warmUpFrames = 3;     ///< frames: at least 3
+  int orbits = 3;           ///< frames: timed passes over the timeline per process
+  double warmUpSeconds = 1; ///< timed: and at least 3 frames
+  double seconds = 10;      ///< timed: length of the timeline
 };
 
 struct MeasureSettings {
-  int replicates = 1;             ///< R: processes
-  int breakdownOrbits = 1;        ///< extra orbits with a stamp per pass (frames pacing)
+  int replicates = 1;      ///< R: processes
+  int breakdownOrbits = 1; ///< extra orbits with a stamp per pass (frames pacing)
   int framesInFlight = 1;
   std::uint64_t seed = 1;
-  double timeLimitSeconds = 600;  ///< of one run
-  int interleave = 4;             ///< most workers alive at once
+  double timeLimitSeconds = 600; ///< of one run
+  int interleave = 4;            ///< most workers alive at once
 };
 
 struct PictureSettings {
-  int count = 4;                               ///< captured frames, spread evenly over the timeline
-  std::string reference = "cpu";               ///< "cpu" or "none"
-  glm::dvec3 background{0.0};                  ///< linear Rec.709, for metrics and sheets
+  int count = 4;                 ///< captured frames, spread evenly over the timeline
+  std::string reference = "cpu"; ///< "cpu" or "none"
+  glm::dvec3 background{0.0};    ///< linear Rec.709, for metrics and sheets
 };
 
 struct PointSettings {
-  std::string sceneName;                       ///< name in the scenes folder, or a path
+  std::string sceneName; ///< name in the scenes folder, or a path
   std::string technique;
   ParameterValues parameters;
-  std::optional<Isovalue> isovalue;            ///< absent: the scene's first
-  std::shared_ptr<const TransferFunction> transferFunction;     ///< resolved; never null
+  /// Absent for techniques that draw volumes alone, unless it was given.
+  std::optional<Isovalue> isovalue;
+  std::shared_ptr<const TransferFunction> transferFunction; ///< resolved; never null
   Shading shading;
   Light light;
   int width = 512;
@@ -89,27 +90,31 @@ struct PointSettings {
   MeasureSettings measure;
   PictureSettings pictures;
 
-  SceneDescription scene;                      ///< read from the scene file
+  SceneDescription scene; ///< read from the scene file, with the point's own changes
+  /// A profile's limit: larger volume files are to be refused. Not part of the configuration.
+  std::optional<std::int64_t> maximumVoxels;
 };
 
 /// An axis value as shown in tables.
 struct Label {
-  std::string axis;        ///< "technique", "step", ...
+  std::string axis; ///< "technique", "step", ...
   std::string value;
 };
 
 struct Point {
   PointSettings settings;
-  nlohmann::json config;           ///< resolved, complete, canonical: what is hashed and written
-  std::vector<Label> labels;       ///< what distinguishes this point within its scenario
+  nlohmann::json config;     ///< resolved, complete, canonical: what is hashed and written
+  std::vector<Label> labels; ///< what distinguishes this point within its scenario
+  int index = 0;             ///< within its scenario
   int block = 0;
-  std::string hash;                ///< config and identity of data: see results/hash.h. Empty until the data is known
-  std::string group;               ///< points of equal group differ only in technique and are interleaved
+  std::string hash;  ///< config and identity of data: see results/hash.h. Empty until the data is known
+  std::string group; ///< points of equal group differ only in technique and are interleaved
 };
 
-/// Reads a complete point configuration (all keys of the schema, defaults where absent) for a technique that
-/// `techniques` knows. `file` is for error texts. Throws InputError.
 class TechniqueCatalogue;
+/// Reads a complete point configuration (all keys of the schema, defaults where absent) for a technique that
+/// `techniques` knows. `file` is for error texts. The configuration of a point gives that point again.
+/// Throws InputError.
 PointSettings readPoint(const nlohmann::json& config, const std::string& file, const TechniqueCatalogue& techniques,
                         const std::filesystem::path& scenesFolder);
 

@@ -23,15 +23,15 @@ struct Isovalue {
 
 /// How the camera sees the volume, in the volume's own axes.
 struct Framing {
-  glm::dvec3 up{0, 1, 0};         ///< axis of the orbit
-  glm::dvec3 front{0, 0, 1};      ///< from the centre towards the camera at azimuth 0; orthogonal to up
+  glm::dvec3 up{0, 1, 0};    ///< axis of the orbit
+  glm::dvec3 front{0, 0, 1}; ///< from the centre towards the camera at azimuth 0; orthogonal to up
 };
 
 struct GeneratorSource {
   GeneratorSettings settings;
 };
 struct FileSource {
-  std::string file;               ///< looked for beside the scene file, then in the data folders
+  std::string file; ///< looked for beside the scene file, then in the data folders
 };
 struct RawSource {
   std::string file;
@@ -41,16 +41,16 @@ struct RawSource {
 struct SceneDescription {
   std::string name;
   std::string title;
-  std::filesystem::path path;     ///< of the scene file; empty for a scene made from a bare volume file
+  std::filesystem::path path; ///< of the scene file; empty for a scene made from a bare volume file
   std::variant<GeneratorSource, FileSource, RawSource> source;
-  std::string fetchHint;          ///< how to get a missing file: "scenes/fetch.py cranium_ct"
-  std::string license;
-  std::optional<Range> visualisationRange;             ///< data's unit
-  std::vector<std::pair<std::string, Isovalue>> isovalues;             ///< in file order; the first is default
+  std::string fetchHint; ///< how to get a missing file: "scenes/fetch.py cranium_ct", an address, or empty
+  std::string license;   ///< empty if the scene file names none
+  std::optional<Range> visualisationRange;                 ///< data's unit
+  std::vector<std::pair<std::string, Isovalue>> isovalues; ///< in file order; the first is default
   std::vector<std::pair<std::string, TransferFunction>> transferFunctions;
   Framing framing;
   Light light;
-  nlohmann::json document;        ///< as read; part of the point's identity where it bears on the picture
+  nlohmann::json document; ///< as read; part of the point's identity where it bears on the picture
 };
 
 /// Folders that are searched for volumes: --data, then VOLMARK_DATA (':'-separated), then <scenes>/data.
@@ -58,16 +58,19 @@ struct DataFolders {
   std::vector<std::filesystem::path> folders;
 };
 
-/// Reads and checks a scene file. Throws InputError.
+/// Reads and checks a scene file. Without isovalues or transfer functions there are "middle" (normalised 0.5)
+/// and "ramp": neither list is empty. Throws InputError.
 SceneDescription readScene(const std::filesystem::path& path);
 
-/// Parses {"normalized": x} or {"raw": x}. Throws InputError.
+/// Parses {"normalized": x in [0,1]} or {"raw": x}. Throws InputError.
 Isovalue parseIsovalue(const JsonValue& value);
 /// Parses {"points": [{"value","color","opacity"}...]}. Throws InputError.
 TransferFunction parseTransferFunction(const std::string& name, const JsonValue& value);
+/// Parses {"headlight","direction","color","ambient"}; headlight defaults to true unless there is a
+/// direction. Throws InputError.
 Light parseLight(const JsonValue& value);
 
-/// A scene around a bare volume file: one isovalue (normalised 0.5), a default transfer function "ramp".
+/// A scene around a bare volume file: isovalue "middle" (normalised 0.5), transfer function "ramp".
 SceneDescription sceneForFile(const std::filesystem::path& volume);
 
 /// Loads or generates the volume. Throws InputError: missing file (names the folders searched and the fetch

@@ -14,13 +14,26 @@
 
 namespace volmark {
 
-/// Parses a file. Throws InputError: missing file, malformed JSON (with line and column), duplicate keys.
+/// Parses a file. Throws InputError: missing file, over 16 MiB, malformed JSON (with line and column), deeper
+/// than 64 levels, duplicate keys.
 nlohmann::json readJsonFile(const std::filesystem::path& path);
+/// The same, with objects in the file's order: for axes and for "the first isovalue".
+nlohmann::ordered_json readOrderedJsonFile(const std::filesystem::path& path);
+/// Parses text under the same rules; `place` stands for the file in errors.
+nlohmann::ordered_json parseOrderedJson(std::string_view text, const std::string& place);
 
-/// One value with the place it stands at.
+/// JSON text of a value for one line of an error: at most `length` characters, then "...".
+std::string shortJson(const nlohmann::json& value, std::size_t length = 60);
+/// ", did you mean \"x\"?" or nothing.
+std::string suggestion(std::string_view name, const std::vector<std::string>& candidates);
+/// "a", "b", "c" in quotes, or the word none.
+std::string quotedList(const std::vector<std::string>& names);
+
+/// One value with the place it stands at. The JSON must outlive it.
 class JsonValue {
 public:
   JsonValue(const nlohmann::json& value, std::string file, std::string pointer = "");
+  JsonValue(const nlohmann::json&& value, std::string file, std::string pointer = "") = delete;
 
   const nlohmann::json& json() const { return *m_value; }
   const std::string& file() const { return m_file; }
@@ -33,11 +46,15 @@ public:
 
   bool boolean() const;
   std::int64_t integer(std::int64_t minimum, std::int64_t maximum) const;
-  double number(double minimum, double maximum) const;      ///< finite
-  std::string text() const;                                 ///< not empty
+  double number(double minimum, double maximum) const; ///< finite
+  std::string text() const;                            ///< not empty
+  /// One of `choices`; the error names the nearest.
   std::string choice(const std::vector<std::string>& choices) const;
-  std::vector<double> numbers(std::size_t count, double minimum, double maximum) const;
+  std::vector<double> numbers(std::size_t count, double minimum, double maximum) const; ///< exactly `count`
   std::vector<JsonValue> array() const;
+  /// The member `key` of an object, or element of an array, as a place for errors. It must be there.
+  JsonValue member(const std::string& key) const;
+  JsonValue element(std::size_t index) const;
 
   bool isObject() const { return m_value->is_object(); }
 
@@ -53,8 +70,8 @@ public:
   /// Throws InputError if `value` isn't an object.
   explicit JsonObject(const JsonValue& value);
 
-  bool has(const std::string& key);                 ///< the key counts as known
-  JsonValue at(const std::string& key);             ///< throws if it is missing
+  bool has(const std::string& key);     ///< the key counts as known
+  JsonValue at(const std::string& key); ///< throws if it is missing
   std::optional<JsonValue> find(const std::string& key);
 
   /// Throws InputError for the first key that nobody asked for.

@@ -15,8 +15,7 @@ namespace {
 
 std::string textOf(const ParameterValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("\"{}\"", *text);
-  return std::visit(
-      [](const auto& v) -> std::string { return fmt::format("{}", v); }, value);
+  return std::visit([](const auto& v) -> std::string { return fmt::format("{}", v); }, value);
 }
 
 std::string allowedText(const ParameterDescriptor& descriptor) {
@@ -42,7 +41,8 @@ std::size_t indexOf(const std::vector<ParameterDescriptor>& descriptors, std::st
 
 int editDistance(std::string_view a, std::string_view b) {
   std::vector<int> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j);
+  for (std::size_t j = 0; j <= b.size(); ++j)
+    row[j] = static_cast<int>(j);
   for (std::size_t i = 1; i <= a.size(); ++i) {
     int diagonal = row[0];
     row[0] = static_cast<int>(i);
@@ -88,8 +88,8 @@ std::string_view typeNameOf(const ParameterValue& value) {
 }
 
 std::optional<std::string> whyNotAllowed(const ParameterDescriptor& descriptor, const ParameterValue& value) {
-  const bool widens = std::holds_alternative<double>(descriptor.defaultValue) &&
-                      std::holds_alternative<std::int64_t>(value);
+  const bool widens =
+      std::holds_alternative<double>(descriptor.defaultValue) && std::holds_alternative<std::int64_t>(value);
   bool allowed = descriptor.defaultValue.index() == value.index() || widens;
   if (const auto number = asNumber(value); allowed && number)
     allowed = std::isfinite(*number) && (!descriptor.minimum || *number >= *descriptor.minimum) &&
@@ -102,14 +102,16 @@ std::optional<std::string> whyNotAllowed(const ParameterDescriptor& descriptor, 
 
 ParameterValues::ParameterValues(std::span<const ParameterDescriptor> descriptors)
     : m_descriptors(descriptors.begin(), descriptors.end()) {
-  for (const ParameterDescriptor& descriptor : m_descriptors) m_values.push_back(descriptor.defaultValue);
+  for (const ParameterDescriptor& descriptor : m_descriptors)
+    m_values.push_back(descriptor.defaultValue);
 }
 
 void ParameterValues::set(std::string_view name, ParameterValue value) {
   const std::size_t index = indexOf(m_descriptors, name);
   if (index == m_descriptors.size()) {
     std::vector<std::string> names;
-    for (const ParameterDescriptor& descriptor : m_descriptors) names.push_back(descriptor.name);
+    for (const ParameterDescriptor& descriptor : m_descriptors)
+      names.push_back(descriptor.name);
     const auto nearest = nearestName(name, names);
     throw InputError(fmt::format("unknown parameter \"{}\"{}; allowed: {}", name,
                                  nearest ? fmt::format(", did you mean \"{}\"?", *nearest) : "",

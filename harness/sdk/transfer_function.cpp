@@ -22,7 +22,9 @@ TransferFunction::TransferFunction(std::string name, std::vector<ControlPoint> p
 
 glm::dvec4 TransferFunction::evaluate(double value) const {
   assert(!m_points.empty());
-  const auto at = [](const ControlPoint& point) { return glm::dvec4(point.color, std::min(point.opacity, kMaximumOpacity)); };
+  const auto at = [](const ControlPoint& point) {
+    return glm::dvec4(point.color, std::min(point.opacity, kMaximumOpacity));
+  };
   const auto next = std::upper_bound(m_points.begin(), m_points.end(), value,
                                      [](double v, const ControlPoint& point) { return v < point.value; });
   if (next == m_points.begin()) return at(m_points.front());
@@ -38,7 +40,8 @@ glm::dvec4 TransferFunction::evaluate(double value) const {
 std::vector<glm::vec4> TransferFunction::table(int size) const {
   assert(size >= 2);
   std::vector<glm::vec4> result(static_cast<std::size_t>(size));
-  for (int i = 0; i < size; ++i) result[static_cast<std::size_t>(i)] = glm::vec4(evaluate(double(i) / (size - 1)));
+  for (int i = 0; i < size; ++i)
+    result[static_cast<std::size_t>(i)] = glm::vec4(evaluate(double(i) / (size - 1)));
   return result;
 }
 

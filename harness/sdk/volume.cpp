@@ -72,9 +72,8 @@ void refuseNonFinite(const std::string& name, const Grid& grid, std::span<const 
 }
 
 std::string identityOf(const Grid& grid, ScalarType type, int timeSteps, std::span<const std::byte> bytes) {
-  const std::string head =
-      fmt::format("{} {} {} {} {:a} {:a} {:a} {}", nameOf(type), grid.dims.x, grid.dims.y, grid.dims.z,
-                  grid.spacingMm.x, grid.spacingMm.y, grid.spacingMm.z, timeSteps);
+  const std::string head = fmt::format("{} {} {} {} {:a} {:a} {:a} {}", nameOf(type), grid.dims.x, grid.dims.y,
+                                       grid.dims.z, grid.spacingMm.x, grid.spacingMm.y, grid.spacingMm.z, timeSteps);
   XXH3_state_t* state = XXH3_createState();
   XXH3_128bits_reset(state);
   XXH3_128bits_update(state, head.data(), head.size());

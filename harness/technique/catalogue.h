@@ -14,8 +14,8 @@ namespace volmark {
 struct CatalogueEntry {
   const TechniqueFactory* factory;
   std::string family;
-  std::filesystem::path module;          ///< the file
-  std::string moduleDigest;              ///< XXH3-128 of the file
+  std::filesystem::path module; ///< the file
+  std::string moduleDigest;     ///< XXH3-128 of the file
 };
 
 class TechniqueCatalogue {
@@ -26,7 +26,7 @@ public:
   /// stays, the second is a problem.
   explicit TechniqueCatalogue(const std::vector<std::filesystem::path>& folders);
 
-  const std::vector<CatalogueEntry>& entries() const { return m_entries; }      ///< by name
+  const std::vector<CatalogueEntry>& entries() const { return m_entries; } ///< by name
   const std::vector<std::string>& problems() const { return m_problems; }
   const CatalogueEntry* find(const std::string& name) const;
   /// Throws InputError with the nearest name, or with the problems if nothing was loaded.

@@ -8,6 +8,7 @@ namespace volmark {
 /// A function of phase in [0,1] over one pass (orbit). Pure: equal phases give equal inputs.
 class Timeline {
 public:
+  /// Throws InputError for an isovalue outside of the visualisation range.
   Timeline(const PointSettings& settings, const Scene& scene);
 
   FrameInputs at(double phase) const;
@@ -20,6 +21,10 @@ public:
 
 private:
   Pose poseAt(double phase) const;
+  double isovalueAt(double phase) const;
+  int timeStepAt(double phase) const;
+  /// Whether the camera was cut on the way, or across the seam of two passes.
+  bool jumpsBetween(double previousPhase, double phase) const;
 
   TimelineSettings m_settings;
   CameraSettings m_camera;
@@ -34,10 +39,11 @@ private:
   Light m_light;
 };
 
-/// The Scene that a technique is prepared with.
+/// The Scene that a technique is prepared with. Throws InputError for a volume of one value without a
+/// visualisation range.
 Scene makeScene(const PointSettings& settings, std::shared_ptr<const Volume> volume);
 
-/// The isovalue, normalised over the scene's visualisation range.
+/// The isovalue, normalised over the scene's visualisation range. Throws InputError outside of [0,1].
 double normalisedIsovalue(const Isovalue& isovalue, const Scene& scene);
 
 } // namespace volmark

@@ -10,20 +10,23 @@
 
 namespace volmark {
 
+/// Spacings are those of the header or the lengths of its space directions; an unknown one (NaN or absent) is
+/// 1. Directions and origin are not applied: world axes are the volume's own.
 struct NrrdHeader {
   Grid grid;
   ScalarType type = ScalarType::uint8;
   bool bigEndian = false;
   bool gzip = false;
   int timeSteps = 1;
-  std::filesystem::path dataFile;        ///< the header's own file if attached
-  std::uint64_t dataOffset = 0;          ///< where encoded voxels start in dataFile
+  std::filesystem::path dataFile; ///< the header's own file if attached
+  std::uint64_t dataOffset = 0;   ///< where encoded voxels start in dataFile
+  std::uint64_t skippedBytes = 0; ///< gzip only: decoded bytes before the first voxel
 
-  std::uint64_t voxelBytes() const;      ///< decoded size that the header declares
+  std::uint64_t voxelBytes() const; ///< decoded size that the header declares
 };
 
-/// Reads and checks the header only, against the file's length and the limit, before any allocation of the
-/// declared size. Throws InputError.
+/// Reads and checks the header only (at most 64 KiB), against the file's length and the limit, before any
+/// allocation of the declared size. Throws InputError.
 NrrdHeader readNrrdHeader(const std::filesystem::path& path, std::uint64_t maximumBytes);
 
 /// Throws InputError; a gzip stream that is longer or shorter than declared is refused.

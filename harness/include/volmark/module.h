@@ -17,7 +17,7 @@ struct ModuleDescription {
   unsigned magic = kModuleMagic;
   const char* sdkVersion = kSdkVersion;
   const char* compiler = kCompiler;
-  const char* buildId = kBuildId;              ///< digest of the SDK's headers
+  const char* buildId = kBuildId; ///< digest of the SDK's headers
   const char* family = "";
   std::vector<gpu::EmbeddedShader> shaders;
   std::vector<TechniqueFactory> techniques;
@@ -30,13 +30,12 @@ extern "C" const volmark::ModuleDescription* volmarkModule();
 
 /// VOLMARK_MODULE(family, factory...): `factory` are expressions of type TechniqueFactory. The family's
 /// embedded GLSL is added by volmark_add_technique().
-#define VOLMARK_MODULE(family_name, ...)                                                                         \
-  namespace volmark_embedded {                                                                                   \
-  extern const std::vector<volmark::gpu::EmbeddedShader> shaders;                                               \
-  }                                                                                                              \
-  extern "C" __attribute__((visibility("default"))) const volmark::ModuleDescription* volmarkModule() {         \
-    static const volmark::ModuleDescription description{.family = #family_name,                                  \
-                                                        .shaders = volmark_embedded::shaders,                    \
-                                                        .techniques = {__VA_ARGS__}};                            \
-    return &description;                                                                                         \
+#define VOLMARK_MODULE(family_name, ...)                                                                               \
+  namespace volmark_embedded {                                                                                         \
+  extern const std::vector<volmark::gpu::EmbeddedShader> shaders;                                                      \
+  }                                                                                                                    \
+  extern "C" __attribute__((visibility("default"))) const volmark::ModuleDescription* volmarkModule() {                \
+    static const volmark::ModuleDescription description{                                                               \
+        .family = #family_name, .shaders = volmark_embedded::shaders, .techniques = {__VA_ARGS__}};                    \
+    return &description;                                                                                               \
   }

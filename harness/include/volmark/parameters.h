@@ -16,13 +16,13 @@ using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 
 /// The type of a parameter is the type of its default value.
 struct ParameterDescriptor {
-  std::string name;                    ///< snake_case
+  std::string name; ///< snake_case
   ParameterValue defaultValue;
-  std::string unit;                    ///< "voxel", "ms", "" for none
-  std::string documentation;           ///< one sentence
-  std::optional<double> minimum;       ///< numbers only, inclusive
-  std::optional<double> maximum;       ///< numbers only, inclusive
-  std::vector<std::string> choices;    ///< strings only; empty allows any
+  std::string unit;                 ///< "voxel", "ms", "" for none
+  std::string documentation;        ///< one sentence
+  std::optional<double> minimum;    ///< numbers only, inclusive
+  std::optional<double> maximum;    ///< numbers only, inclusive
+  std::vector<std::string> choices; ///< strings only; empty allows any
 
   static ParameterDescriptor boolean(std::string name, bool value, std::string documentation);
   static ParameterDescriptor integer(std::string name, std::int64_t value, std::int64_t minimum, std::int64_t maximum,

@@ -13,13 +13,13 @@ namespace volmark {
 struct Picture {
   int width = 0;
   int height = 0;
-  std::vector<glm::vec4> color;      ///< linear Rec.709, premultiplied alpha
-  std::vector<float> distance;       ///< along the view direction, world units; +infinity where nothing is
+  std::vector<glm::vec4> color; ///< linear Rec.709, premultiplied alpha
+  std::vector<float> distance;  ///< along the view direction, world units; +infinity where nothing is
 
   Picture() = default;
-  Picture(int width, int height)
-      : width(width), height(height), color(static_cast<std::size_t>(width) * height, glm::vec4(0)),
-        distance(static_cast<std::size_t>(width) * height, HUGE_VALF) {}
+  Picture(int columns, int rows)
+      : width(columns), height(rows), color(static_cast<std::size_t>(columns) * rows, glm::vec4(0)),
+        distance(static_cast<std::size_t>(columns) * rows, HUGE_VALF) {}
 
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
 };

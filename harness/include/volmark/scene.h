@@ -18,22 +18,22 @@ enum class ShadingModel : std::uint8_t { none, lambert, phong, gooch };
 
 struct Shading {
   ShadingModel model = ShadingModel::lambert;
-  glm::dvec3 surfaceColor{0.85, 0.82, 0.75};   ///< linear Rec.709; isosurfaces only
+  glm::dvec3 surfaceColor{0.85, 0.82, 0.75}; ///< linear Rec.709; isosurfaces only
 };
 
 /// Directional light. `direction` points towards the light and is normalised.
 struct Light {
-  bool headlight = true;             ///< the light comes from the eye; `direction` is ignored
-  glm::dvec3 direction{0, 0, 1};     ///< world space
-  glm::dvec3 color{1.0};             ///< linear Rec.709
-  double ambient = 0.1;              ///< share of the colour that needs no light, [0,1]
+  bool headlight = true;         ///< the light comes from the eye; `direction` is ignored
+  glm::dvec3 direction{0, 0, 1}; ///< world space
+  glm::dvec3 color{1.0};         ///< linear Rec.709
+  double ambient = 0.1;          ///< share of the colour that needs no light, [0,1]
 };
 
 /// A technique gets this once. Scalars are normalised to [0,1] over `visualisationRange` and clamped.
 struct Scene {
   std::string name;
   std::shared_ptr<const Volume> volume;
-  Range visualisationRange;          ///< data's unit; minimum < maximum
+  Range visualisationRange; ///< data's unit; minimum < maximum
   Shading shading;
 
   double normalised(double raw) const {
@@ -50,10 +50,10 @@ inline constexpr int kMaximumClippingPlanes = 6;
 
 /// What the timeline gives a frame; the same for every technique.
 struct FrameInputs {
-  std::vector<View> views;                                      ///< 1..n; stereo: view 0 is left
-  double isovalue = 0.5;                                        ///< normalised; inside is value >= isovalue
-  std::shared_ptr<const TransferFunction> transferFunction;     ///< never null
-  std::vector<ClippingPlane> clippingPlanes;                    ///< at most kMaximumClippingPlanes
+  std::vector<View> views;                                  ///< 1..n; stereo: view 0 is left
+  double isovalue = 0.5;                                    ///< normalised; inside is value >= isovalue
+  std::shared_ptr<const TransferFunction> transferFunction; ///< never null
+  std::vector<ClippingPlane> clippingPlanes;                ///< at most kMaximumClippingPlanes
   int timeStep = 0;
   Light light;
 };
@@ -66,7 +66,7 @@ struct Changes {
   bool clippingPlanes = true;
   bool timeStep = true;
   bool light = true;
-  bool cut = true;          ///< the camera jumped: temporal prediction is pointless
+  bool cut = true; ///< the camera jumped: temporal prediction is pointless
 };
 
 } // namespace volmark

@@ -22,46 +22,46 @@ struct Target;
 
 /// What is kept between frames.
 enum class History : std::uint8_t {
-  none,         ///< a frame depends on its inputs alone
-  lossless,     ///< state is kept, but the picture must not depend on it
-  visible,      ///< the picture depends on earlier frames since reset()
+  none,     ///< a frame depends on its inputs alone
+  lossless, ///< state is kept, but the picture must not depend on it
+  visible,  ///< the picture depends on earlier frames since reset()
 };
 
 enum class Draws : std::uint8_t { isosurface, volume, both };
 
 /// How far a counter's value can be compared.
 enum class CounterKind : std::uint8_t {
-  exact,          ///< integers of structures: equal on every machine
-  perDevice,      ///< along rays: floating point decides
-  statistical,    ///< depends on the order of threads or on random numbers
+  exact,       ///< integers of structures: equal on every machine
+  perDevice,   ///< along rays: floating point decides
+  statistical, ///< depends on the order of threads or on random numbers
 };
 
 struct CounterDescriptor {
-  std::string name;              ///< snake_case; results column
+  std::string name; ///< snake_case; results column
   CounterKind kind = CounterKind::perDevice;
   std::string documentation;
 };
 
 struct PassDescriptor {
-  std::string name;              ///< snake_case; results column
+  std::string name; ///< snake_case; results column
   std::string documentation;
 };
 
 /// What a technique is, without an instance of it.
 struct TechniqueInfo {
-  std::string name;                            ///< snake_case, unique over all modules
-  std::string summary;                         ///< one line
-  std::string paper;                           ///< authors, title, year; empty if there is none
-  std::string section;                         ///< where in the paper
+  std::string name;    ///< snake_case, unique over all modules
+  std::string summary; ///< one line
+  std::string paper;   ///< authors, title, year; empty if there is none
+  std::string section; ///< where in the paper
   Draws draws = Draws::isosurface;
   History history = History::none;
-  bool deterministic = true;                   ///< equal inputs give equal bits; else replays are repeated
-  bool needsGpu = true;                        ///< false: no Vulkan device is created; draws to Frame::pictures
+  bool deterministic = true; ///< equal inputs give equal bits; else replays are repeated
+  bool needsGpu = true;      ///< false: no Vulkan device is created; draws to Frame::pictures
   int maximumViews = 2;
-  std::vector<ShadingModel> shadings;          ///< supported models, the first one is the default
+  std::vector<ShadingModel> shadings; ///< supported models, the first one is the default
   std::vector<ParameterDescriptor> parameters;
-  std::vector<PassDescriptor> passes;          ///< of update and draw
-  std::vector<PassDescriptor> generation;      ///< of prepare
+  std::vector<PassDescriptor> passes;     ///< of update and draw
+  std::vector<PassDescriptor> generation; ///< of prepare
   std::vector<CounterDescriptor> counters;
 };
 
@@ -77,16 +77,16 @@ struct Preparation {
   const Scene& scene;
   const ParameterValues& parameters;
   OutputSize size;
-  gpu::Device* device = nullptr;               ///< null if !needsGpu
+  gpu::Device* device = nullptr; ///< null if !needsGpu
 };
 
 /// One frame. Exactly one of target and pictures is set.
 struct Frame {
-  std::uint64_t index = 0;                     ///< since reset()
+  std::uint64_t index = 0; ///< since reset()
   const FrameInputs& inputs;
-  bool counting = false;                       ///< a counting frame: fill counters(); never timed
+  bool counting = false; ///< a counting frame: fill counters(); never timed
   gpu::Target* target = nullptr;
-  std::vector<Picture>* pictures = nullptr;    ///< one per view, already of the right size; write every pixel
+  std::vector<Picture>* pictures = nullptr; ///< one per view, already of the right size; write every pixel
 };
 
 struct CounterValue {

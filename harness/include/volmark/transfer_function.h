@@ -13,9 +13,9 @@ namespace volmark {
 inline constexpr double kMaximumOpacity = 0.9999;
 
 struct ControlPoint {
-  double value = 0;          ///< normalised scalar, [0,1]
-  glm::dvec3 color{0.0};     ///< linear Rec.709, straight (not premultiplied), [0,1]
-  double opacity = 0;        ///< per voxel length, [0,1]; used as min(opacity, kMaximumOpacity)
+  double value = 0;      ///< normalised scalar, [0,1]
+  glm::dvec3 color{0.0}; ///< linear Rec.709, straight (not premultiplied), [0,1]
+  double opacity = 0;    ///< per voxel length, [0,1]; used as min(opacity, kMaximumOpacity)
 };
 
 class TransferFunction {

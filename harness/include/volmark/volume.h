@@ -26,16 +26,16 @@ ScalarType scalarTypeFromName(std::string_view name);
 /// origin. n voxels along an axis span (n-1)*spacing: the box of voxel centres (harness/README.md,
 /// Conventions).
 struct Grid {
-  glm::ivec3 dims{1};          ///< voxels along x, y, z; each at least 1
-  glm::dvec3 spacingMm{1.0};   ///< distance of voxel centres, > 0
+  glm::ivec3 dims{1};        ///< voxels along x, y, z; each at least 1
+  glm::dvec3 spacingMm{1.0}; ///< distance of voxel centres, > 0
 
   std::size_t voxelCount() const;
-  glm::dvec3 extentMm() const;          ///< (dims-1)*spacing; 0 along an axis of one voxel
-  glm::dvec3 boxMinimum() const;        ///< -extent/2
-  glm::dvec3 boxMaximum() const;        ///< +extent/2
-  double boundingRadiusMm() const;      ///< half the box's diagonal
-  double smallestSpacingMm() const;     ///< the length that "one voxel" means for steps and opacity
-  glm::dvec3 toVoxel(const glm::dvec3& world) const;   ///< continuous voxel coordinates, [0, n-1] inside the box
+  glm::dvec3 extentMm() const;                       ///< (dims-1)*spacing; 0 along an axis of one voxel
+  glm::dvec3 boxMinimum() const;                     ///< -extent/2
+  glm::dvec3 boxMaximum() const;                     ///< +extent/2
+  double boundingRadiusMm() const;                   ///< half the box's diagonal
+  double smallestSpacingMm() const;                  ///< the length that "one voxel" means for steps and opacity
+  glm::dvec3 toVoxel(const glm::dvec3& world) const; ///< continuous voxel coordinates, [0, n-1] inside the box
   glm::dvec3 toWorld(const glm::dvec3& voxel) const;
 };
 

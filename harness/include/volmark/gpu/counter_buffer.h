@@ -14,14 +14,15 @@ public:
   CounterBuffer() = default;
   CounterBuffer(Device& device, int count);
 
-  BufferRange range() const { return {m_buffer.handle(), 0, m_buffer.bytes()}; }
+  BufferRange range() const { return m_buffer.range(); }
+  MemoryItem memory() const { return m_buffer.memory(); }
   /// Records zeroing, visible to the compute and graphics shaders that follow.
   void clear(Commands& commands) const;
   /// Values after the frame has finished.
   std::vector<std::uint64_t> read() const;
 
 private:
-  Buffer m_buffer;      ///< host-visible: small and read only in counting frames
+  Buffer m_buffer; ///< host-visible: small and read only in counting frames
   int m_count = 0;
 };
 

@@ -14,12 +14,12 @@ namespace volmark::gpu {
 
 /// What a device is and can do, queried, never assumed. Written to every run's provenance.
 struct DeviceFacts {
-  int index = 0;                     ///< position in listDevices()
-  std::string name;                  ///< VkPhysicalDeviceProperties::deviceName
-  std::string driverName;            ///< "llvmpipe", "NVIDIA", ...
-  std::string driverInfo;            ///< driver version as the driver words it
-  std::string apiVersion;            ///< "1.4.305"
-  std::string type;                  ///< "discrete", "integrated", "virtual", "cpu" or "other"
+  int index = 0;          ///< position in listDevices()
+  std::string name;       ///< VkPhysicalDeviceProperties::deviceName
+  std::string driverName; ///< "llvmpipe", "NVIDIA", ...
+  std::string driverInfo; ///< driver version as the driver words it
+  std::string apiVersion; ///< "1.4.305"
+  std::string type;       ///< "discrete", "integrated", "virtual", "cpu" or "other"
   std::uint32_t vendorId = 0;
   std::uint32_t deviceId = 0;
 
@@ -32,23 +32,28 @@ struct DeviceFacts {
   std::uint32_t maximumWorkgroupCount[3] = {0, 0, 0};
   std::uint64_t maximumStorageBufferRange = 0;
   std::uint64_t maximumAllocationBytes = 0;
-  std::uint64_t deviceMemoryBytes = 0;        ///< sum of the device-local heaps
-  double timestampPeriodNs = 0;               ///< 0: the queue has no timestamps
+  std::uint64_t deviceMemoryBytes = 0; ///< sum of the device-local heaps
+  double timestampPeriodNs = 0;        ///< 0: the queue has no timestamps
   std::uint32_t timestampValidBits = 0;
 
-  bool meshShader = false;                    ///< task and mesh shaders
+  bool meshShader = false; ///< task and mesh shaders
   bool multiview = false;
+  bool int8 = false;  ///< arithmetic and storage buffers
+  bool int16 = false; ///< arithmetic and storage buffers
   bool int64 = false;
   bool int64BufferAtomics = false;
-  bool rayQuery = false;
+  bool float64 = false;
+  bool fragmentStores = false; ///< storage writes and atomics in fragment shaders
+  bool subgroupSizeControl = false;
+  bool rayQuery = false; ///< with acceleration structures
   bool pipelineStatistics = false;
 
-  std::string missing;   ///< why volmark can't use this device at all (one sentence), or empty
+  std::string missing; ///< why volmark can't use this device at all (one sentence), or empty
 };
 
 struct DeviceOptions {
-  std::string selector;       ///< empty: best type first; else an index or a part of the name, any case
-  bool validate = false;      ///< load the Khronos validation layer, with synchronisation validation
+  std::string selector;  ///< empty: best type first; else an index or a part of the name, any case
+  bool validate = false; ///< load the Khronos validation layer, with synchronisation validation
 };
 
 /// All devices of the loader. Never throws for a machine without Vulkan: the list is empty then.
@@ -85,6 +90,9 @@ public:
   std::vector<std::string> validationMessages() const;
 
   void waitIdle() const;
+
+  /// Gives an object the name that validation messages call it by; nothing without validation.
+  void setName(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 
   /// Extension commands that the loader does not export.
   PFN_vkCmdPushDescriptorSetKHR cmdPushDescriptorSet = nullptr;

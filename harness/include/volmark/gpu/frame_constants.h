@@ -8,7 +8,6 @@
 namespace volmark::gpu {
 
 /// `seed`: of the run, as given to reset(). At most kMaxViews views (asserted).
-FrameConstants frameConstants(const Frame& frame, const Scene& scene, const VolumeTexture& texture,
-                              std::uint64_t seed);
+FrameConstants frameConstants(const Frame& frame, const Scene& scene, const VolumeTexture& texture, std::uint64_t seed);
 
 } // namespace volmark::gpu

@@ -9,7 +9,7 @@
 namespace volmark::gpu {
 
 struct ImageDescription {
-  std::string name;                              ///< ledger and debug name
+  std::string name; ///< ledger and debug name; empty: the harness's own, not in the ledger
   VkImageType type = VK_IMAGE_TYPE_2D;
   VkFormat format = VK_FORMAT_UNDEFINED;
   VkExtent3D extent{1, 1, 1};
@@ -35,9 +35,12 @@ public:
   VkImageView layerView(std::uint32_t layer) const { return m_layerViews.at(layer); }
   VkImageAspectFlags aspect() const;
   const ImageDescription& description() const { return m_description; }
+  MemoryItem memory() const { return {m_description.name, m_allocated}; } ///< what it added to the ledger
   explicit operator bool() const { return m_handle != VK_NULL_HANDLE; }
 
 private:
+  void allocate();
+  void createViews();
   void destroy() noexcept;
 
   Device* m_device = nullptr;

@@ -20,9 +20,9 @@ public:
   void add(const std::string& name, std::uint64_t bytes);
   void remove(const std::string& name, std::uint64_t bytes);
 
-  std::vector<MemoryItem> items() const;   ///< by name, without zero entries
+  std::vector<MemoryItem> items() const; ///< by name, without zero entries
   std::uint64_t totalBytes() const;
-  std::uint64_t peakBytes() const;         ///< largest total since construction or resetPeak()
+  std::uint64_t peakBytes() const; ///< largest total since construction or resetPeak()
   void resetPeak();
 
 private:

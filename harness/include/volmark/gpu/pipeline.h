@@ -27,8 +27,8 @@ private:
 };
 
 struct PipelineLayoutDescription {
-  std::vector<VkDescriptorType> bindings;       ///< binding i has type bindings[i], count 1, all stages
-  std::uint32_t pushConstantBytes = 0;          ///< at most 128
+  std::vector<VkDescriptorType> bindings; ///< binding i has type bindings[i], count 1, all stages
+  std::uint32_t pushConstantBytes = 0;    ///< at most 128
 };
 
 struct ComputePipelineDescription {
@@ -36,18 +36,18 @@ struct ComputePipelineDescription {
   ShaderSource shader;
   PipelineLayoutDescription layout;
   Specialisation specialisation;
-  std::uint32_t requiredSubgroupSize = 0;       ///< 0: the driver's choice
+  std::uint32_t requiredSubgroupSize = 0; ///< 0: the driver's choice
 };
 
 enum class Blending { none, premultiplied };
 
 struct GraphicsPipelineDescription {
   std::string name;
-  std::vector<ShaderSource> shaders;            ///< vertex+fragment or [task+]mesh+fragment
+  std::vector<ShaderSource> shaders; ///< vertex+fragment or [task+]mesh+fragment
   PipelineLayoutDescription layout;
   Specialisation specialisation;
   std::vector<VkFormat> colorFormats;
-  VkFormat depthFormat = VK_FORMAT_UNDEFINED;   ///< undefined: no depth test
+  VkFormat depthFormat = VK_FORMAT_UNDEFINED; ///< undefined: no depth test
   VkCompareOp depthCompare = VK_COMPARE_OP_LESS;
   bool depthWrite = true;
   VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
@@ -56,7 +56,7 @@ struct GraphicsPipelineDescription {
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   bool alphaToCoverage = false;
   Blending blending = Blending::none;
-  std::uint32_t viewMask = 0;                   ///< multiview; vertex pipelines only
+  std::uint32_t viewMask = 0; ///< multiview; vertex pipelines only
 };
 
 /// Move-only owner of a pipeline and its layout. Viewport and scissor are dynamic in graphics pipelines.
@@ -73,18 +73,24 @@ public:
   VkPipeline handle() const { return m_handle; }
   VkPipelineLayout layout() const { return m_layout; }
   VkPipelineBindPoint bindPoint() const { return m_bindPoint; }
+  VkShaderStageFlags stages() const { return m_stages; } ///< that see bindings and push constants
+  const std::string& name() const { return m_name; }
   const PipelineLayoutDescription& layoutDescription() const { return m_layoutDescription; }
   explicit operator bool() const { return m_handle != VK_NULL_HANDLE; }
 
 private:
   void createLayout(const PipelineLayoutDescription& description);
+  void createCompute(const ComputePipelineDescription& description);
+  void createGraphics(const GraphicsPipelineDescription& description);
   void destroy() noexcept;
 
   Device* m_device = nullptr;
+  std::string m_name;
   VkPipeline m_handle = VK_NULL_HANDLE;
   VkPipelineLayout m_layout = VK_NULL_HANDLE;
   VkDescriptorSetLayout m_setLayout = VK_NULL_HANDLE;
   VkPipelineBindPoint m_bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
+  VkShaderStageFlags m_stages = VK_SHADER_STAGE_COMPUTE_BIT;
   PipelineLayoutDescription m_layoutDescription;
 };
 

@@ -23,9 +23,9 @@ struct EmbeddedShader {
 void registerShaders(std::span<const EmbeddedShader> files);
 
 struct ShaderSource {
-  std::string path;                                              ///< "<family>/<file>"
+  std::string path; ///< "<family>/<file>"
   VkShaderStageFlagBits stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  std::vector<std::pair<std::string, std::string>> macros;      ///< only where types or array sizes change
+  std::vector<std::pair<std::string, std::string>> macros; ///< only where types or array sizes change
 };
 
 /// SPIR-V 1.6 for Vulkan 1.3, entry point "main". Files are searched first in the folders of the

@@ -18,8 +18,8 @@ struct Target {
   int width;
   int height;
   int views;
-  Image color;        ///< kColorFormat: linear Rec.709, premultiplied alpha
-  Image distance;     ///< kDepthFormat
+  Image color;    ///< kColorFormat: linear Rec.709, premultiplied alpha
+  Image distance; ///< kDepthFormat
 
   /// Records the first transition to GENERAL; once.
   void initialise(Commands& commands) const;

@@ -25,19 +25,25 @@ public:
   /// Why this would not work on a device, or nothing.
   static std::optional<std::string> whyUnsupported(const Device& device, const Volume& volume, Filtering filtering);
 
-  /// `step` is an absolute time step inside the resident range.
-  SampledImage at(int step) const;
-  /// Replaces one resident slot's voxels (streamed volumes); records into the current pass.
+  /// The slot that was made for time step `step`, an absolute one in [first, first+count).
+  SampledImage at(int step) const { return slot(step - m_first); }
+  SampledImage slot(int index) const;
+  /// Replaces one resident slot's voxels by those of time step `step` (streamed volumes); records into the current
+  /// pass, with all the staging memory it needs.
   void upload(Commands& commands, const Volume& volume, int step, int slot);
 
   float scale() const { return m_scale; }
   float bias() const { return m_bias; }
   Filtering filtering() const { return m_filtering; }
+  VkDeviceSize bytes() const;                                       ///< of all slots, as allocated
+  MemoryItem memory() const { return {"volume texture", bytes()}; } ///< what it added to the ledger
 
 private:
+  void uploadInSlabs(Commands& commands, const Volume& volume, int step, int slot);
+
   Filtering m_filtering;
   int m_first;
-  std::vector<Image> m_images;
+  std::vector<Image> m_images; ///< one per slot
   Sampler m_sampler;
   float m_scale = 1;
   float m_bias = 0;

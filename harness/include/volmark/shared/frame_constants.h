@@ -4,6 +4,7 @@
 
 #ifdef __cplusplus
 #include <glm/glm.hpp>
+
 #include <cstdint>
 namespace volmark::gpu {
 using glm::ivec2;
@@ -17,32 +18,32 @@ const int kMaxViews = 4;
 const int kMaxClippingPlanes = 6;
 
 struct ViewConstants {
-  vec3 position;      // world
+  vec3 position; // world
   vec3 right;
   vec3 up;
   vec3 forward;
-  vec4 tangents;      // left, right, down, up (signed)
+  vec4 tangents; // left, right, down, up (signed)
 };
 
 struct FrameConstants {
   ViewConstants views[kMaxViews];
-  vec4 clippingPlanes[kMaxClippingPlanes];   // xyz normal, w offset: keeps dot(normal, p) >= offset
-  vec3 boxMinimum;                           // of voxel centres, world
+  vec4 clippingPlanes[kMaxClippingPlanes]; // xyz normal, w offset: keeps dot(normal, p) >= offset
+  vec3 boxMinimum;                         // of voxel centres, world
   vec3 boxMaximum;
   vec3 spacing;
   ivec3 dims;
-  ivec2 size;                                // of the output, pixels
+  ivec2 size; // of the output, pixels
   uint viewCount;
   uint clippingPlaneCount;
-  float isovalue;                            // normalised
-  float valueScale;                          // sampled texel to normalised scalar
+  float isovalue;   // normalised
+  float valueScale; // sampled texel to normalised scalar
   float valueBias;
-  float smallestSpacing;                     // length of "one voxel"
-  vec3 lightDirection;                       // towards the light, world
+  float smallestSpacing; // length of "one voxel"
+  vec3 lightDirection;   // towards the light, world
   vec3 lightColor;
   float ambient;
   uint headlight;
-  uint shadingModel;                         // ShadingModel
+  uint shadingModel; // ShadingModel
   vec3 surfaceColor;
   uint frameIndex;
   uint seed;

@@ -1,0 +1,84 @@
+// volmark run
+#include "cli/commands.h"
+#include "scenario/scenario.h"
+#include "worker/runner.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace volmark {
+
+namespace {
+
+struct RunArguments {
+  std::string config;
+  std::string profile;
+  std::vector<std::string> assignments;
+  std::string results = "results";
+  std::vector<std::string> data;
+  std::string device;
+  bool validate = false;
+  std::string retry;
+  double maximumGib = kDefaultMaximumGib;
+};
+
+int exitCodeOf(const RunnerResult& result) {
+  if (result.interrupted) return 130;
+  return result.failed > 0 ? 1 : 0;
+}
+
+void printSummary(const RunnerResult& result) {
+  std::string line = fmt::format("{} completed", result.completed);
+  if (result.alreadyDone > 0) line += fmt::format(", {} done before", result.alreadyDone);
+  if (result.elsewhere > 0) line += fmt::format(", {} under way elsewhere", result.elsewhere);
+  if (result.failed > 0) line += fmt::format(", {} FAILED (--retry failed runs them again)", result.failed);
+  if (result.unsupported > 0) line += fmt::format(", {} unsupported here", result.unsupported);
+  fmt::print("{}\nresults: {}\n", line, result.folder.string());
+  if (result.interrupted)
+    fmt::print("interrupted: the same command goes on from here\n");
+  else
+    fmt::print("report:  PYTHONPATH=analysis python3 -m volmark_analysis report {}\n", result.folder.string());
+}
+
+int run(const RunArguments& arguments) {
+  const Places places = findPlaces();
+  const TechniqueCatalogue catalogue = loadCatalogue();
+  ScenarioOptions scenario{arguments.config, arguments.profile, arguments.assignments, places.scenes,
+                           places.configs / "profiles"};
+  RunnerOptions options;
+  options.resultsFolder = arguments.results;
+  options.scenesFolder = places.scenes;
+  options.techniqueFolders = techniqueFolders();
+  options.data = dataFolders(arguments.data, places);
+  options.device = arguments.device;
+  options.validate = arguments.validate;
+  options.retryFailed = arguments.retry == "failed";
+  options.maximumBytes = bytesOfGib(arguments.maximumGib);
+  Progress progress(stderr);
+  const RunnerResult result = runScenario(readScenario(scenario, catalogue), catalogue, options, progress);
+  printSummary(result);
+  return exitCodeOf(result);
+}
+
+} // namespace
+
+void addRunCommand(CLI::App& app, int& exitCode) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "Run a scenario, or what is left of it");
+  command->add_option("CONFIG", arguments->config, "Scenario file (configs/*.json)")->required();
+  command->add_option("--profile", arguments->profile, "paper, desktop, lavapipe, smoke, or one of the file's own");
+  command->add_option("--set", arguments->assignments, "Change a setting of every point: key.path=value")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--results", arguments->results, "Folder of experiments")->capture_default_str();
+  command->add_option("--data", arguments->data, "Folder with volumes, before VOLMARK_DATA and scenes/data");
+  command->add_option("--device", arguments->device, "Index or part of the name (volmark device)");
+  command->add_flag("--validate", arguments->validate, "Vulkan validation layers; any message fails a run's check");
+  command->add_option("--retry", arguments->retry, "failed: run again what did not complete")
+      ->check(CLI::IsMember({"failed"}));
+  command->add_option("--max-volume-gib", arguments->maximumGib, "Largest volume to load")->capture_default_str();
+  command->callback([arguments, &exitCode] { exitCode = run(*arguments); });
+}
+
+} // namespace volmark

@@ -1,0 +1,27 @@
+// What a pixel's ray sees of the volume: the part within the box of voxel centres and all clipping planes.
+#pragma once
+
+#include "volmark/scene.h"
+
+#include <optional>
+#include <span>
+
+namespace volmark::reference {
+
+/// Points are origin + t * direction, t in world units, entry <= t <= exit.
+struct Path {
+  glm::dvec3 origin;
+  glm::dvec3 direction;   ///< normalised
+  double cosine;          ///< of the angle to the view direction
+  double entry;           ///< >= 0
+  double exit;            ///< equal to the entry in a box of no thickness
+  glm::dvec3 entryNormal; ///< of the side or plane entered by, to the eye; -direction if the eye is inside
+
+  glm::dvec3 at(double t) const { return origin + t * direction; }
+};
+
+/// The ray through the centre of pixel (x, y) of a width*height picture, y down. Nothing if it misses.
+std::optional<Path> pathThroughPixel(const Grid& grid, std::span<const ClippingPlane> planes, const View& view, int x,
+                                     int y, int width, int height);
+
+} // namespace volmark::reference

@@ -1,0 +1,102 @@
+#include "scenario/point_keys.h"
+#include "scenario/scenario.h"
+
+#include <nlohmann/json.hpp>
+
+namespace volmark {
+
+namespace {
+
+using nlohmann::json;
+
+json schemaOf(const std::string& path) {
+  json schema = findPointKey(path)->schema;
+  schema["description"] = findPointKey(path)->documentation;
+  return schema;
+}
+
+json object(json properties, const std::vector<std::string>& required) {
+  return {{"type", "object"},
+          {"properties", std::move(properties)},
+          {"required", required},
+          {"additionalProperties", false}};
+}
+
+json volumeSchema() {
+  const json text = {{"type", "string"}, {"minLength", 1}};
+  json raw = object({{"file", text},
+                     {"dims", schemaOf("volume.generator.dims")},
+                     {"type", schemaOf("volume.generator.type")},
+                     {"spacing_mm", schemaOf("volume.generator.spacing_mm")},
+                     {"endian", {{"enum", {"little", "big"}}}},
+                     {"offset_bytes", {{"type", "integer"}, {"minimum", 0}}},
+                     {"time_steps", {{"type", "integer"}, {"minimum", 1}}}},
+                    {"file", "dims", "type"});
+  // One voxel along an axis is a volume too, if it comes from a file.
+  raw["properties"]["dims"]["items"] = {{"type", "integer"}, {"minimum", 1}};
+  raw["properties"]["dims"]["description"] = "Voxels along x, y, z.";
+  raw["properties"]["type"]["description"] = "Scalar type.";
+  raw["properties"]["spacing_mm"]["description"] = "Distance of voxel centres.";
+  const json generator = object({{"name", text},
+                                 {"dims", schemaOf("volume.generator.dims")},
+                                 {"spacing_mm", schemaOf("volume.generator.spacing_mm")},
+                                 {"type", schemaOf("volume.generator.type")},
+                                 {"parameters", schemaOf("volume.generator.parameters")}},
+                                {"name", "dims"});
+  return {{"oneOf",
+           {object({{"file", text}}, {"file"}), object({{"raw", raw}}, {"raw"}),
+            object({{"generator", generator}}, {"generator"})}}};
+}
+
+json sourceSchema() {
+  json properties = json::object();
+  for (const char* key : {"package", "url", "license", "acknowledgement", "note"})
+    properties[key] = {{"type", "string"}, {"minLength", 1}};
+  properties["sha512"] = {{"type", "string"}, {"pattern", "^[0-9a-f]{128}$"}};
+  json schema = object(properties, {});
+  schema["description"] = "Where the data comes from.";
+  return schema;
+}
+
+/// Of alternatives, those that are no names in a scene.
+json withoutNames(const json& schema) {
+  json result = json::array();
+  for (const json& alternative : schema["anyOf"])
+    if (alternative.value("type", "") != "string") result.push_back(alternative);
+  return {{"anyOf", result}};
+}
+
+} // namespace
+
+json sceneSchema() {
+  const json text = {{"type", "string"}, {"minLength", 1}};
+  const json byName = {{"type", "object"}, {"minProperties", 1}};
+  json isovalues = byName;
+  isovalues["additionalProperties"] = withoutNames(findPointKey("isovalue")->schema);
+  json transferFunctions = byName;
+  transferFunctions["additionalProperties"] = withoutNames(findPointKey("transfer_function")->schema);
+
+  json range = findPointKey("visualisation_range")->schema["anyOf"][1];
+  range["description"] = "Data values that become 0 and 1; default: the smallest and largest voxel.";
+  json schema = object(
+      {{"$schema", text},
+       {"volmark_scene", {{"const", 1}, {"description", "Version of the format."}}},
+       {"title", text},
+       {"volume", volumeSchema()},
+       {"source", sourceSchema()},
+       {"visualisation_range", range},
+       {"isovalues", isovalues},
+       {"transfer_functions", transferFunctions},
+       {"framing", object({{"up", schemaOf("framing.up")}, {"front", schemaOf("framing.front")}}, {"up", "front"})},
+       {"light", object({{"headlight", schemaOf("light.headlight")},
+                         {"direction", schemaOf("light.direction")},
+                         {"color", schemaOf("light.color")},
+                         {"ambient", schemaOf("light.ambient")}},
+                        {})}},
+      {"volmark_scene", "title", "volume"});
+  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["title"] = "volmark scene, version 1";
+  return schema;
+}
+
+} // namespace volmark

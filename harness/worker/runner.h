@@ -1,0 +1,44 @@
+// The grid: every point and replicate of a scenario, in worker processes that take turns.
+#pragma once
+
+#include "results/experiment.h"
+#include "scenario/scenario.h"
+#include "worker/progress.h"
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace volmark {
+
+struct RunnerOptions {
+  std::filesystem::path resultsFolder;
+  std::filesystem::path scenesFolder;
+  std::vector<std::filesystem::path> techniqueFolders;
+  DataFolders data;
+  std::string device; ///< selector
+  bool validate = false;
+  bool retryFailed = false;       ///< run again what ended otherwise than completed
+  std::uint64_t maximumBytes = 0; ///< of one volume
+};
+
+struct RunnerResult {
+  int completed = 0;
+  int alreadyDone = 0;
+  int elsewhere = 0; ///< claimed by another process
+  int failed = 0;    ///< failed, crashed, timed out or out of memory
+  int unsupported = 0;
+  bool interrupted = false;
+  std::filesystem::path folder;
+};
+
+/// Set by the signal handler of SIGINT and SIGTERM.
+extern std::atomic<bool> interruptRequested;
+
+/// Opens every volume once (bad data stops here, before anything is written), then runs what is not done yet.
+/// Throws InputError and DeviceError.
+RunnerResult runScenario(Scenario scenario, const TechniqueCatalogue& catalogue, const RunnerOptions& options,
+                         Progress& progress);
+
+} // namespace volmark

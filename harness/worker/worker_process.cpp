@@ -1,0 +1,230 @@
+#include "worker/worker_process.h"
+
+#include "measure/clocks.h"
+#include "results/experiment.h"
+#include "results/provenance.h"
+#include "volmark/error.h"
+#include "volmark/gpu/stamp_self_test.h"
+#include "worker/messages.h"
+#include "worker/replay.h"
+#include "worker/session.h"
+#include "worker/timed_pass.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <new>
+#include <optional>
+
+namespace volmark {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Replays of a technique that is not deterministic, to show their spread.
+constexpr int kReplays = 3;
+
+/// Attempts of the stamp self-test before breakdown orbits are given up.
+constexpr int kStampTests = 5;
+
+Point pointOf(const WorkerStart& start, const TechniqueCatalogue& catalogue) {
+  Point point;
+  point.settings = readPoint(start.config, "point", catalogue, start.scenesFolder);
+  point.config = start.config;
+  for (const auto& [axis, value] : start.labels)
+    point.labels.push_back({axis, value});
+  point.hash = start.pointHash;
+  point.group = start.group;
+  point.index = start.pointIndex;
+  return point;
+}
+
+std::vector<fs::path> pathsOf(const std::vector<std::string>& texts) {
+  return {texts.begin(), texts.end()};
+}
+
+/// One run: its parts in the order of the turns.
+class Run {
+public:
+  Run(const WorkerStart& start, LineChannel& runner)
+      : m_start(start), m_runner(runner), m_catalogue(pathsOf(start.techniqueFolders)),
+        m_point(pointOf(start, m_catalogue)), m_entry(m_catalogue.get(m_point.settings.technique)) {}
+
+  void take(const std::string& turn, int orbit) {
+    if (turn == "prepare")
+      prepare();
+    else if (turn == "warm_up")
+      m_timed->warmUp();
+    else if (turn == "headline")
+      m_timed->orbit(OrbitKind::headline, orbit);
+    else if (turn == "breakdown")
+      breakdown(orbit);
+    else
+      finish();
+  }
+
+  nlohmann::json provenanceNow() {
+    return provenance(m_session && m_session->device() ? &m_session->device()->facts() : nullptr);
+  }
+
+private:
+  void tick() {
+    ++m_frames;
+    const double now = monotonicMs();
+    if (now - m_lastTickMs < 500) return;
+    m_lastTickMs = now;
+    m_runner.send({{"frames", m_frames}});
+  }
+
+  void prepare() {
+    const DataFolders data{pathsOf(m_start.dataFolders)};
+    auto volume = openVolume(m_point.settings.scene, data, m_start.maximumBytes);
+    m_record.provenance = nlohmann::json::object();
+    m_session = std::make_unique<Session>(m_point.settings, m_entry, std::move(volume),
+                                          SessionOptions{m_start.device, m_start.validate});
+    const double beginMs = monotonicMs();
+    const FrameTimes times = m_session->prepare();
+    m_record.prepareMs = monotonicMs() - beginMs;
+    for (const auto& pass : times.passes) {
+      const double none = std::nan("");
+      m_record.generation.push_back({pass.name, pass.onGpu ? none : pass.ms, pass.onGpu ? pass.ms : none});
+    }
+    m_timed = std::make_unique<TimedPass>(*m_session, [this] { tick(); });
+  }
+
+  /// Times of passes are taken only where stamps tell passes apart.
+  void breakdown(int orbit) {
+    keepTimedFrame();
+    if (!m_stampsTrusted) testStamps();
+    if (*m_stampsTrusted) m_timed->orbit(OrbitKind::breakdown, orbit);
+  }
+
+  void testStamps() {
+    m_stampsTrusted = true;
+    gpu::Device* device = m_session->device();
+    if (!device) return;
+    // Another process may have got in the way of one attempt.
+    gpu::StampSelfTest test = gpu::runStampSelfTest(*device);
+    for (int i = 1; i < kStampTests && !test.trusted; ++i)
+      test = gpu::runStampSelfTest(*device);
+    m_stampsTrusted = test.trusted;
+    m_record.checks.push_back({"stamps_tell_passes_apart", test.trusted, gpu::describe(test)});
+  }
+
+  /// Reads back the last headline frame, once, before anything else is drawn.
+  void keepTimedFrame() {
+    if (!m_timedFrame.empty()) return;
+    m_timedFrame = m_session->pictures();
+    m_trace = m_timed->trace();
+  }
+
+  void finish() {
+    keepTimedFrame();
+    m_record.frames = m_timed->rows();
+    m_record.firstFrameMs = m_timed->firstFrameMs();
+    checkMemory();
+
+    Replay replay(*m_session, m_trace, [this] { tick(); });
+    m_record.counters = replay.count();
+    std::vector<std::size_t> wanted = replay.capturedFrames(m_point.settings.pictures.count);
+    auto captured = replay.draw(wanted);
+    checkReplays(replay, captured.at(wanted.back()));
+
+    const Judgement judgement{*m_session, m_trace, m_start.stagingFolder, m_start.experimentFolder, m_start.runHash};
+    m_record.pictures = judgePictures(judgement, captured, m_record.frames);
+    checkValidation();
+    m_record.provenance = provenanceNow();
+    const Experiment experiment{fs::path(m_start.experimentFolder)};
+    experiment.commit({m_start.pointHash, m_start.runHash, m_start.replicate}, m_point, m_entry, m_record);
+  }
+
+  void checkReplays(Replay& replay, const std::vector<Picture>& first) {
+    const std::size_t last = m_trace.phases.size() - 1;
+    std::vector<std::vector<Picture>> replays{first};
+    const bool deterministic = m_session->info().deterministic;
+    for (int i = 1; !deterministic && i < kReplays; ++i)
+      replays.push_back(replay.draw({last}).at(last));
+    m_record.checks.push_back(compareTimedWithReplay(m_timedFrame, replays, deterministic));
+    if (m_session->info().history == History::lossless)
+      m_record.checks.push_back(compareWithFreshState(*m_session, m_trace, last, first));
+  }
+
+  /// What the technique says it uses against what the allocator saw.
+  void checkMemory() {
+    m_record.memory = m_session->technique().memory();
+    std::uint64_t said = 0;
+    for (const auto& item : m_record.memory)
+      said += item.bytes;
+    gpu::Device* device = m_session->device();
+    if (!device) return;
+    m_record.ledgerBytes = m_session->techniqueBytes();
+    m_record.ledgerPeakBytes = device->ledger().peakBytes();
+    m_record.checks.push_back({"memory_equals_ledger", said == m_record.ledgerBytes,
+                               fmt::format("technique {} bytes, ledger {}", said, m_record.ledgerBytes)});
+  }
+
+  void checkValidation() {
+    if (!m_start.validate || !m_session->device()) return;
+    const auto messages = m_session->device()->validationMessages();
+    const std::string detail =
+        messages.empty() ? "silent" : fmt::format("{} message(s), first: {}", messages.size(), messages.front());
+    m_record.checks.push_back({"validation", messages.empty(), detail});
+  }
+
+  WorkerStart m_start;
+  LineChannel& m_runner;
+  TechniqueCatalogue m_catalogue;
+  Point m_point;
+  const CatalogueEntry& m_entry;
+  std::unique_ptr<Session> m_session;
+  std::unique_ptr<TimedPass> m_timed;
+  std::vector<Picture> m_timedFrame;
+  std::optional<bool> m_stampsTrusted;
+  Trace m_trace; ///< as of m_timedFrame: breakdown orbits are not part of it
+  RunRecord m_record;
+  int m_frames = 0;
+  double m_lastTickMs = 0;
+};
+
+std::string oneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+} // namespace
+
+int serveTurns() {
+  LineChannel runner(kWorkerReadFd, kWorkerWriteFd);
+  std::unique_ptr<Run> run;
+  const auto failed = [&](RunStatus status, const std::string& reason) {
+    nlohmann::json known = run ? run->provenanceNow() : provenance(nullptr);
+    runner.send({{"failed", nameOf(status)}, {"reason", oneLine(reason)}, {"provenance", std::move(known)}});
+    return 0;
+  };
+  try {
+    nlohmann::json message;
+    while (runner.receive(message, -1) != LineChannel::Result::closed) {
+      if (message.contains("start")) {
+        run = std::make_unique<Run>(message["start"].get<WorkerStart>(), runner);
+        continue;
+      }
+      if (!message.contains("turn")) continue;
+      const std::string turn = message["turn"];
+      run->take(turn, message.value("orbit", 0));
+      runner.send({{"done", turn}});
+      if (turn == "finish") break;
+    }
+    return 0;
+  } catch (const UnsupportedError& error) {
+    return failed(RunStatus::unsupported, error.what());
+  } catch (const std::bad_alloc&) {
+    return failed(RunStatus::outOfMemory, "out of host memory");
+  } catch (const std::exception& error) {
+    return failed(RunStatus::failed, error.what());
+  }
+}
+
+} // namespace volmark

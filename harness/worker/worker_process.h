@@ -1,0 +1,13 @@
+// The child's side: one run from start to committed results, one turn at a time.
+#pragma once
+
+namespace volmark {
+
+/// File descriptors that a worker process gets.
+inline constexpr int kWorkerReadFd = 3;
+inline constexpr int kWorkerWriteFd = 4;
+
+/// Serves turns until "finish" or until the runner is gone. Returns the process's exit code.
+int serveTurns();
+
+} // namespace volmark

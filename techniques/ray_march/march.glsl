@@ -1,0 +1,115 @@
+// The ray of one invocation and the samples along it, for both techniques of this family.
+#ifndef RAY_MARCH_MARCH_GLSL
+#define RAY_MARCH_MARCH_GLSL
+
+#include <ray_march/shared.h>
+#include <volmark/box.glsl>
+#include <volmark/counters.glsl>
+#include <volmark/frame.glsl>
+#include <volmark/random.glsl>
+#include <volmark/shading.glsl>
+#include <volmark/view.glsl>
+#include <volmark/volume.glsl>
+
+layout(local_size_x = kGroupSize, local_size_y = kGroupSize) in;
+
+layout(constant_id = kIdShaderFiltering) const bool kShaderFiltering = false;
+layout(constant_id = kIdShadingModel) const uint kShadingModel = 0u;
+layout(constant_id = kIdJitter) const bool kJitter = false;
+layout(constant_id = kIdCounting) const bool kCounting = false;
+
+VOLMARK_FRAME(kBindingFrame)
+layout(set = 0, binding = kBindingVolume) uniform sampler3D volume;
+layout(set = 0, binding = kBindingColor, rgba16f) uniform writeonly image2DArray colorImage;
+layout(set = 0, binding = kBindingDistance, r32f) uniform writeonly image2DArray distanceImage;
+VOLMARK_COUNTERS(kBindingCounters)
+layout(push_constant, scalar) uniform MarchBlock {
+  MarchConstants march;
+};
+
+// A ray cut to the volume. Places on it are counted in steps from the entry: place f lies at ray parameter
+// entry + f * stepLength, and at `base + f * delta` in the space that the volume is sampled in, so that no
+// rounding adds up along the ray.
+struct Path {
+  Ray ray;
+  float entry;          // ray parameter, world units
+  float places;         // of the exit, in steps; not an integer in general
+  vec3 entryNormal;
+  vec3 base;            // texture coordinates, or voxel coordinates where the shader filters
+  vec3 delta;
+  float shift;          // jitter in steps, [0,1); 0 without
+};
+
+// Jittering (Nysjö, Malmberg, Nyström 2019, section 4: "stochastic jittering") shifts all samples of a ray. Both eyes get
+// the same shift in a pixel.
+float jitterOf(ivec2 pixel) {
+  uint index = uint(pixel.y * frame.size.x + pixel.x);
+  return toUnitFloat(randomBits(frame.seed, index, frame.frameIndex, 0u));
+}
+
+// False if the ray misses the volume or all of it is clipped away.
+bool makePath(VolumeGrid grid, ivec2 pixel, uint view, out Path path) {
+  path.ray = rayThroughPixel(frame.views[view], pixel, frame.size);
+  float exit;
+  if (!clipRay(frame, path.ray, path.entry, exit, path.entryNormal)) return false;
+  path.places = (exit - path.entry) / march.stepLength;
+  vec3 unit = kShaderFiltering ? vec3(1) : 1.0 / vec3(grid.dims);
+  vec3 toUnit = grid.voxelsPerUnit * unit;
+  path.base = (pointOnRay(path.ray, path.entry) - grid.boxMinimum) * toUnit + (kShaderFiltering ? vec3(0) : 0.5 * unit);
+  path.delta = path.ray.direction * march.stepLength * toUnit;
+  path.shift = kJitter ? jitterOf(pixel) : 0.0;
+  return true;
+}
+
+// The volume's texel value at a place. Neither normalised nor clamped: it is compared with texelOf() a scalar,
+// so that a sample costs nothing but the fetch.
+float texelAt(VolumeGrid grid, Path path, float place) {
+  vec3 position = path.base + place * path.delta;
+  if (!kShaderFiltering) return textureLod(volume, position, 0.0).r;
+  vec3 voxel = clamp(position, vec3(0), vec3(grid.dims - 1));
+  vec3 corner = floor(voxel);
+  vec4 low, high;
+  fetchCell(volume, grid, ivec3(corner), low, high);
+  return interpolateCell(low, high, voxel - corner);
+}
+
+// The texel value of a normalised scalar.
+float texelOf(VolumeGrid grid, float scalar) {
+  return (scalar - grid.valueBias) / grid.valueScale;
+}
+
+// Unit normal towards lower values at a place, or zero where the field has no gradient.
+vec3 normalAt(VolumeGrid grid, Path path, float place) {
+  vec3 world = pointOnRay(path.ray, path.entry + place * march.stepLength);
+  world = clamp(world, grid.boxMinimum, grid.boxMaximum);
+  return normalOfGradient(sampleGradient(volume, grid, world, kShaderFiltering));
+}
+
+vec3 shadeOnPath(Path path, vec3 color, vec3 normal) {
+  vec3 toEye = -path.ray.direction;
+  vec3 toLight = frame.headlight != 0u ? toEye : frame.lightDirection;
+  return shade(kShadingModel, color, normal, toLight, toEye, frame.lightColor, frame.ambient);
+}
+
+// The distance of a pixel without a surface.
+float infinity() {
+  return uintBitsToFloat(0x7f800000u);
+}
+
+// `distance` along the view direction, +infinity if there is no surface.
+void writePixel(ivec2 pixel, uint view, vec4 color, float distance) {
+  int layer = int(bitfieldExtract(march.layers, int(8u * view), 8));
+  imageStore(colorImage, ivec3(pixel, layer), color);
+  imageStore(distanceImage, ivec3(pixel, layer), vec4(distance));
+}
+
+// Adds the work of one ray; every invocation calls it, with zeros if its ray misses.
+void countRay(uint samples, bool entered, bool ended, uint gradients) {
+  if (!kCounting) return;
+  addToCounterBySubgroup(kCounterSamples, samples);
+  addToCounterBySubgroup(kCounterRays, entered ? 1u : 0u);
+  addToCounterBySubgroup(kCounterEnded, ended ? 1u : 0u);
+  addToCounterBySubgroup(kCounterGradients, gradients);
+}
+
+#endif

@@ -1,0 +1,120 @@
+#include "marcher.h"
+
+#include "volmark/gpu/frame_constants.h"
+#include "volmark/gpu/target.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace volmark::ray_march {
+
+namespace {
+
+gpu::Filtering filteringOf(const ParameterValues& parameters) {
+  return parameters.text("filtering") == "shader" ? gpu::Filtering::shader : gpu::Filtering::hardware;
+}
+
+gpu::PipelineLayoutDescription layoutOf(bool hasTable) {
+  gpu::PipelineLayoutDescription layout{.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+                                                     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                                     VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                                                     VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                        .pushConstantBytes = sizeof(MarchConstants)};
+  if (hasTable) layout.bindings.push_back(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+  return layout;
+}
+
+std::uint32_t layersOf(const std::vector<View>& views) {
+  std::uint32_t layers = 0;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    layers |= static_cast<std::uint32_t>(views[i].layer) << (8 * i);
+  return layers;
+}
+
+} // namespace
+
+Marcher::Marcher(const Preparation& preparation, const MarcherDescription& description, Recorder& recorder)
+    : m_scene(&preparation.scene), m_stepLength(static_cast<float>(preparation.parameters.number("step") *
+                                                                   m_scene->volume->grid().smallestSpacingMm())),
+      m_volume(*preparation.device, preparation.scene, filteringOf(preparation.parameters), recorder, 0,
+               preparation.scene.volume->timeSteps()),
+      m_counters(*preparation.device, kCounterCount) {
+  const Pass pass = recorder.hostPass("pipelines");
+  m_timed = makePipeline(*preparation.device, description, false, preparation);
+  m_counting = makePipeline(*preparation.device, description, true, preparation);
+}
+
+gpu::Pipeline Marcher::makePipeline(gpu::Device& device, MarcherDescription description, bool counting,
+                                    const Preparation& preparation) const {
+  description.variant.set(kIdShaderFiltering, m_volume.filtering() == gpu::Filtering::shader)
+      .set(kIdShadingModel, static_cast<std::uint32_t>(preparation.scene.shading.model))
+      .set(kIdJitter, preparation.parameters.boolean("jitter"))
+      .set(kIdCounting, counting);
+  return {device, gpu::ComputePipelineDescription{.name = description.shader.path + (counting ? " counting" : ""),
+                                                  .shader = description.shader,
+                                                  .layout = layoutOf(description.hasTable),
+                                                  .specialisation = description.variant}};
+}
+
+void Marcher::march(const Frame& frame, std::uint64_t seed, MarchConstants constants,
+                    std::span<const gpu::Resource> table, Recorder& recorder) const {
+  assert(frame.target && static_cast<int>(frame.inputs.views.size()) <= gpu::kMaxViews);
+  constants.stepLength = m_stepLength;
+  constants.layers = layersOf(frame.inputs.views);
+
+  const Pass pass = recorder.pass("march");
+  gpu::Commands& commands = recorder.gpu();
+  if (frame.counting) m_counters.clear(commands);
+  std::vector<gpu::Resource> resources = {commands.constants(gpu::frameConstants(frame, *m_scene, m_volume, seed)),
+                                          m_volume.at(frame.inputs.timeStep),
+                                          gpu::StorageImage{frame.target->color.view()},
+                                          gpu::StorageImage{frame.target->distance.view()}, m_counters.range()};
+  resources.insert(resources.end(), table.begin(), table.end());
+  const glm::uvec3 groups((frame.target->width + kGroupSize - 1) / kGroupSize,
+                          (frame.target->height + kGroupSize - 1) / kGroupSize, frame.inputs.views.size());
+  commands.dispatch(frame.counting ? m_counting : m_timed, resources, gpu::bytesOf(constants), groups);
+  if (frame.counting) commands.barrier(gpu::kComputeWrite, gpu::kHostRead);
+}
+
+ParameterDescriptor stepParameter(double value) {
+  return ParameterDescriptor::number("step", value, 0.01, 4, "voxel", "Distance of samples along a ray.");
+}
+
+ParameterDescriptor filteringParameter() {
+  return ParameterDescriptor::choice("filtering", "hardware", {"hardware", "shader"},
+                                     "The sampler's linear filter, or eight fetches interpolated in 32-bit floats.");
+}
+
+ParameterDescriptor jitterParameter() {
+  return ParameterDescriptor::boolean("jitter", false,
+                                      "Shift all samples of a ray by a random share of a step, new in each frame.");
+}
+
+std::vector<CounterDescriptor> counterDescriptors(const std::string& ended, const std::string& endedDocumentation) {
+  return {{"samples", CounterKind::perDevice, "Samples along rays; those of gradients are not counted."},
+          {"rays", CounterKind::perDevice, "Rays that meet the unclipped part of the volume's box."},
+          {ended, CounterKind::perDevice, endedDocumentation},
+          {"gradients", CounterKind::perDevice, "Gradients evaluated (up to six samples each)."}};
+}
+
+std::optional<std::string> whyUnsupported(const Scene& scene, const ParameterValues& parameters, const OutputSize& size,
+                                          const gpu::Device* device) {
+  if (size.views > gpu::kMaxViews)
+    return "The point has " + std::to_string(size.views) + " views, allowed are at most " +
+           std::to_string(gpu::kMaxViews) + ".";
+  return gpu::VolumeTexture::whyUnsupported(*device, *scene.volume, filteringOf(parameters));
+}
+
+std::vector<gpu::MemoryItem> memoryAdded(const std::vector<gpu::MemoryItem>& before,
+                                         const std::vector<gpu::MemoryItem>& after) {
+  std::vector<gpu::MemoryItem> added;
+  for (gpu::MemoryItem item : after) {
+    const auto old = std::find_if(before.begin(), before.end(),
+                                  [&](const gpu::MemoryItem& other) { return other.name == item.name; });
+    if (old != before.end()) item.bytes -= old->bytes;
+    if (item.bytes > 0) added.push_back(item);
+  }
+  return added;
+}
+
+} // namespace volmark::ray_march

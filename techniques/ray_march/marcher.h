@@ -1,0 +1,64 @@
+// What both techniques of this family do on the host: the volume, two pipelines (timed and counting), one
+// dispatch for all views.
+#pragma once
+
+#include "shared.h"
+#include "volmark/gpu/counter_buffer.h"
+#include "volmark/gpu/volume_texture.h"
+#include "volmark/shared/frame_constants.h"
+#include "volmark/technique.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace volmark::ray_march {
+
+/// What differs between the techniques, and between their parameters.
+struct MarcherDescription {
+  gpu::ShaderSource shader;
+  gpu::Specialisation variant; ///< the technique's own constants
+  bool hasTable = false;       ///< binding kBindingTable is there
+};
+
+class Marcher {
+public:
+  /// Generation passes "upload" and "pipelines". Reads the parameters filtering and jitter.
+  Marcher(const Preparation& preparation, const MarcherDescription& description, Recorder& recorder);
+
+  /// Records the pass "march". `table` is bound to kBindingTable if the description has one. Sets
+  /// stepLength and layers of `constants`.
+  void march(const Frame& frame, std::uint64_t seed, MarchConstants constants, std::span<const gpu::Resource> table,
+             Recorder& recorder) const;
+
+  /// Values of kCounter... after a counting frame.
+  std::vector<std::uint64_t> counts() const { return m_counters.read(); }
+
+private:
+  gpu::Pipeline makePipeline(gpu::Device& device, MarcherDescription description, bool counting,
+                             const Preparation& preparation) const;
+
+  const Scene* m_scene;
+  float m_stepLength;
+  gpu::VolumeTexture m_volume;
+  gpu::Pipeline m_timed;
+  gpu::Pipeline m_counting;
+  gpu::CounterBuffer m_counters;
+};
+
+/// The parameters that both techniques have: step, filtering, jitter.
+ParameterDescriptor stepParameter(double value);
+ParameterDescriptor filteringParameter();
+ParameterDescriptor jitterParameter();
+
+/// Descriptors of kCounter..., with the name and meaning of kCounterEnded.
+std::vector<CounterDescriptor> counterDescriptors(const std::string& ended, const std::string& endedDocumentation);
+
+std::optional<std::string> whyUnsupported(const Scene& scene, const ParameterValues& parameters, const OutputSize& size,
+                                          const gpu::Device* device);
+
+/// What `after` has over `before`, by name.
+std::vector<gpu::MemoryItem> memoryAdded(const std::vector<gpu::MemoryItem>& before,
+                                         const std::vector<gpu::MemoryItem>& after);
+
+} // namespace volmark::ray_march

@@ -1,0 +1,53 @@
+// What the host code and the shaders of this family share. Scalar layout.
+#ifndef RAY_MARCH_SHARED_H
+#define RAY_MARCH_SHARED_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace volmark::ray_march {
+using uint = std::uint32_t;
+#endif
+
+// Bindings of set 0.
+const int kBindingFrame = 0;
+const int kBindingVolume = 1;
+const int kBindingColor = 2;
+const int kBindingDistance = 3;
+const int kBindingCounters = 4;
+const int kBindingTable = 5; // volumes only
+
+// Specialisation constants.
+const int kIdShaderFiltering = 0;
+const int kIdShadingModel = 1;
+const int kIdJitter = 2;
+const int kIdCounting = 3;
+const int kIdEarlyTermination = 4; // volumes only
+
+// Counters, in the order of TechniqueInfo::counters.
+const int kCounterSamples = 0;
+const int kCounterRays = 1;
+const int kCounterEnded = 2; // hits of a surface, or rays ended by early termination
+const int kCounterGradients = 3;
+const int kCounterCount = 4;
+
+// Pixels of a workgroup, each way.
+const int kGroupSize = 8;
+
+struct MarchConstants {
+  float stepLength; // world units
+  uint layers;      // output layer of view i in byte i
+  uint bisections;  // surfaces only
+  // Volumes only:
+  float endTransmittance; // early termination at or below it
+  float visibleLow;       // unclamped scalars at or below are transparent,
+  float visibleHigh;      // and those at or above
+  float tableScale;       // normalised scalar to table coordinate
+  float tableBias;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(MarchConstants) == 32);
+} // namespace volmark::ray_march
+#endif
+
+#endif

@@ -1,0 +1,288 @@
+#include "dvr_raymarch.h"
+#include "reference/reference.h"
+#include "session.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace volmark::ray_march {
+namespace {
+
+constexpr int kWidth = 64;
+constexpr int kHeight = 56;
+constexpr double kOneOf255 = 1.0 / 255;
+
+using Values = std::vector<std::pair<std::string, ParameterValue>>;
+using Form = reference::VolumeSamples::Form;
+
+Scene rippleScene(ShadingModel shading = ShadingModel::none) {
+  return makeScene(makeVolume(ripples, {64, 60, 56}, ScalarType::float32), shading);
+}
+
+FrameInputs inputsFor(const Scene& scene, double topOpacity = 0.1) {
+  return makeInputs(lookAtBox(scene.volume->grid(), 33, 21, kWidth, kHeight), 0.5, topOpacity);
+}
+
+Picture draw(const Scene& scene, const FrameInputs& inputs, const Values& values) {
+  return drawOnce(dvrRaymarch(), scene, inputs, kWidth, kHeight, values).pictures[0];
+}
+
+Picture referenceOf(const Scene& scene, const FrameInputs& inputs, const reference::VolumeSamples& samples) {
+  return reference::renderVolume(scene, inputs, 0, kWidth, kHeight, samples);
+}
+
+Values kind(const char* name, double step) {
+  // Small tables are built fast; the control points of ramp() lie on the entries of this one.
+  return {{"transfer_function_kind", std::string(name)},
+          {"step", step},
+          {"preintegrated_size", std::int64_t(101)},
+          {"early_termination", false}};
+}
+
+class DvrScalarTypes : public testing::TestWithParam<ScalarType> {};
+
+TEST_P(DvrScalarTypes, MatchTheReferenceSampleForSample) {
+  const Scene scene = makeScene(makeVolume(ripples, {64, 48, 40}, GetParam(), {0.8, 1.1, 1.4}), ShadingModel::none);
+  const FrameInputs inputs = inputsFor(scene);
+  const Picture points = referenceOf(scene, inputs, {.form = Form::point, .stepVoxels = 0.7});
+  const Picture slabs = referenceOf(scene, inputs, {.form = Form::preintegrated, .stepVoxels = 0.7});
+  for (const char* filtering : {"hardware", "shader"}) {
+    Values post = kind("post", 0.7);
+    Values preintegrated = kind("preintegrated", 0.7);
+    post.emplace_back("filtering", std::string(filtering));
+    preintegrated.emplace_back("filtering", std::string(filtering));
+    EXPECT_LT(largestDifference(draw(scene, inputs, post), points), kOneOf255) << filtering;
+    EXPECT_LT(largestDifference(draw(scene, inputs, preintegrated), slabs), kOneOf255) << filtering;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DvrScalarTypes,
+                         testing::Values(ScalarType::int8, ScalarType::uint8, ScalarType::int16, ScalarType::uint16,
+                                         ScalarType::float32),
+                         [](const auto& type) { return std::string(nameOf(type.param)); });
+
+class DvrSteps : public testing::TestWithParam<double> {};
+
+TEST_P(DvrSteps, MatchTheReferenceAtEveryOpacity) {
+  const Scene scene = rippleScene();
+  for (const double topOpacity : {0.01, 0.1, 0.6, 0.95}) {
+    const FrameInputs inputs = inputsFor(scene, topOpacity);
+    const double step = GetParam();
+    const Picture points = referenceOf(scene, inputs, {.form = Form::point, .stepVoxels = step});
+    const Picture slabs = referenceOf(scene, inputs, {.form = Form::preintegrated, .stepVoxels = step});
+    EXPECT_LT(largestDifference(draw(scene, inputs, kind("post", step)), points), kOneOf255) << topOpacity;
+    EXPECT_LT(largestDifference(draw(scene, inputs, kind("preintegrated", step)), slabs), kOneOf255) << topOpacity;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DvrSteps, testing::Values(0.25, 1.0, 2.5));
+
+TEST(DvrRaymarch, OpaqueSlabsCutAtTheExitAreNotOpaque) {
+  // A slab of 2.5 voxels of opacity 0.9999 is 1 in 32-bit floats, and so would be any part of it.
+  const Scene scene = rippleScene();
+  const FrameInputs inputs = inputsFor(scene, 1.0);
+  const Picture slabs = referenceOf(scene, inputs, {.form = Form::preintegrated, .stepVoxels = 2.5});
+  EXPECT_LT(largestDifference(draw(scene, inputs, kind("preintegrated", 2.5)), slabs), 0.05);
+}
+
+TEST(DvrRaymarch, ConvergesToTheIntegral) {
+  const Scene scene = rippleScene();
+  const FrameInputs inputs = inputsFor(scene, 0.3);
+  const Picture integral = referenceOf(scene, inputs, {.form = Form::converged, .tolerance = 1e-4});
+  for (const char* name : {"post", "preintegrated"}) {
+    const double coarse = meanDifference(draw(scene, inputs, kind(name, 4)), integral);
+    const double middle = meanDifference(draw(scene, inputs, kind(name, 1)), integral);
+    const double fine = meanDifference(draw(scene, inputs, kind(name, 0.1)), integral);
+    EXPECT_LT(middle, 0.5 * coarse) << name;
+    // Half floats of the picture are what is left.
+    EXPECT_LT(fine, std::max(0.5 * middle, 1e-4)) << name;
+    EXPECT_LT(fine, 0.002) << name;
+  }
+}
+
+TEST(DvrRaymarch, PreintegrationKeepsThinLayersAtLongSteps) {
+  const Scene scene = rippleScene();
+  FrameInputs inputs = inputsFor(scene);
+  inputs.transferFunction = std::make_shared<TransferFunction>(
+      "layer",
+      std::vector<ControlPoint>{{0.48, {0.9, 0.5, 0.2}, 0}, {0.5, {0.9, 0.5, 0.2}, 0.8}, {0.52, {0.9, 0.5, 0.2}, 0}});
+  const Picture integral = referenceOf(scene, inputs, {.form = Form::converged, .tolerance = 1e-3});
+  const double post = meanDifference(draw(scene, inputs, kind("post", 2)), integral);
+  const double preintegrated = meanDifference(draw(scene, inputs, kind("preintegrated", 2)), integral);
+  EXPECT_LT(preintegrated, 0.3 * post);
+}
+
+TEST(DvrRaymarch, ShadesAsTheReference) {
+  for (const ShadingModel model : {ShadingModel::lambert, ShadingModel::phong, ShadingModel::gooch}) {
+    const Scene scene = rippleScene(model);
+    FrameInputs inputs = inputsFor(scene);
+    inputs.light = {.headlight = false,
+                    .direction = glm::normalize(glm::dvec3(0.3, 0.8, 0.6)),
+                    .color = {1.0, 0.9, 0.7},
+                    .ambient = 0.2};
+    const Picture points = referenceOf(scene, inputs, {.form = Form::point, .stepVoxels = 0.7});
+    const Picture slabs = referenceOf(scene, inputs, {.form = Form::preintegrated, .stepVoxels = 0.7});
+    EXPECT_LT(largestDifference(draw(scene, inputs, kind("post", 0.7)), points), kOneOf255) << int(model);
+    EXPECT_LT(largestDifference(draw(scene, inputs, kind("preintegrated", 0.7)), slabs), kOneOf255) << int(model);
+  }
+}
+
+TEST(DvrRaymarch, ClippingPlanesAndOffAxisFrustaMatchTheReference) {
+  const Scene scene = rippleScene();
+  FrameInputs inputs = inputsFor(scene, 0.4);
+  inputs.views[0].frustum = {-0.1, 0.3, -0.25, 0.12};
+  inputs.clippingPlanes = {{glm::normalize(glm::dvec3(-0.6, -0.3, -1)), -4.0}, {{0, -1, 0}, -10.0}};
+  const Picture points = referenceOf(scene, inputs, {.form = Form::point, .stepVoxels = 0.6});
+  const Picture slabs = referenceOf(scene, inputs, {.form = Form::preintegrated, .stepVoxels = 0.6});
+  EXPECT_LT(largestDifference(draw(scene, inputs, kind("post", 0.6)), points), kOneOf255);
+  EXPECT_LT(largestDifference(draw(scene, inputs, kind("preintegrated", 0.6)), slabs), kOneOf255);
+}
+
+TEST(DvrRaymarch, EarlyTerminationChangesNoMoreThanItAllows) {
+  const Scene scene = rippleScene();
+  const FrameInputs inputs = inputsFor(scene, 0.7);
+  for (const char* name : {"post", "preintegrated"}) {
+    const Values off = kind(name, 0.5);
+    const Drawn whole = drawOnce(dvrRaymarch(), scene, inputs, kWidth, kHeight, off, true);
+    EXPECT_EQ(whole.counters.at("terminated_rays"), 0u);
+    for (const double opacity : {0.8, 0.99}) {
+      Values on = off;
+      on.emplace_back("early_termination", true);
+      on.emplace_back("termination_opacity", opacity);
+      const Drawn ended = drawOnce(dvrRaymarch(), scene, inputs, kWidth, kHeight, on, true);
+      EXPECT_LE(largestDifference(ended.pictures[0], whole.pictures[0]), 1 - opacity + 1e-3);
+      EXPECT_GT(ended.counters.at("terminated_rays"), 200u);
+      EXPECT_LT(ended.counters.at("samples"), whole.counters.at("samples") * 9 / 10);
+      // It ends at the very sample that reaches the opacity, as in the reference.
+      const Picture reference = referenceOf(scene, inputs,
+                                            {.form = *name == 'p' && name[1] == 'o' ? Form::point : Form::preintegrated,
+                                             .stepVoxels = 0.5,
+                                             .earlyTermination = true,
+                                             .terminationOpacity = opacity});
+      EXPECT_LT(meanDifference(ended.pictures[0], reference), 0.1 * kOneOf255);
+    }
+  }
+}
+
+TEST(DvrRaymarch, BothEyesEqualTwoSinglePictures) {
+  const Scene scene = rippleScene();
+  FrameInputs stereo = inputsFor(scene);
+  View right = stereo.views[0];
+  right.pose.position += 6.0 * right.pose.right;
+  right.layer = 1;
+  stereo.views.push_back(right);
+  for (const char* name : {"post", "preintegrated"}) {
+    const Drawn both = drawOnce(dvrRaymarch(), scene, stereo, kWidth, kHeight, kind(name, 1));
+    for (std::size_t view = 0; view < 2; ++view) {
+      FrameInputs mono = stereo;
+      mono.views = {stereo.views[view]};
+      mono.views[0].layer = 0;
+      EXPECT_TRUE(identical(both.pictures[view], draw(scene, mono, kind(name, 1)))) << name << view;
+    }
+  }
+}
+
+TEST(DvrRaymarch, RepeatsAndCountsWithoutChangingThePicture) {
+  for (const ShadingModel model : {ShadingModel::none, ShadingModel::lambert}) {
+    const Scene scene = rippleScene(model);
+    const FrameInputs inputs = inputsFor(scene, 0.5);
+    for (const char* name : {"post", "preintegrated"}) {
+      for (const bool jitter : {false, true}) {
+        const Values values = {{"transfer_function_kind", std::string(name)},
+                               {"preintegrated_size", std::int64_t(64)},
+                               {"jitter", jitter}};
+        Session session(dvrRaymarch(), scene, withParameters(dvrRaymarch(), values), {kWidth, kHeight, 1});
+        const Picture first = session.draw(inputs).pictures[0];
+        const Picture second = session.draw(inputs).pictures[0];
+        session.reset();
+        const Picture counted = session.draw(inputs, true).pictures[0];
+        EXPECT_TRUE(identical(first, counted));
+        EXPECT_EQ(identical(first, second), !jitter);
+      }
+    }
+  }
+}
+
+TEST(DvrRaymarch, JitterKeepsThePictureOfShortSteps) {
+  const Scene scene = rippleScene();
+  const FrameInputs inputs = inputsFor(scene, 0.2);
+  const Picture integral = referenceOf(scene, inputs, {.form = Form::converged, .tolerance = 1e-4});
+  for (const char* name : {"post", "preintegrated"}) {
+    Values values = kind(name, 0.1);
+    values.emplace_back("jitter", true);
+    EXPECT_LT(meanDifference(draw(scene, inputs, values), integral), 0.002) << name;
+  }
+  // The parts of slabs at both ends make pre-integration right at long steps, too.
+  Values values = kind("preintegrated", 2);
+  EXPECT_LT(meanDifference(draw(scene, inputs, values), integral), 0.01);
+  values.emplace_back("jitter", true);
+  EXPECT_LT(meanDifference(draw(scene, inputs, values), integral), 0.01);
+}
+
+TEST(DvrRaymarch, CountsSamplesAsTheGeometrySays) {
+  const Scene scene = rippleScene(ShadingModel::lambert);
+  const FrameInputs inputs = inputsFor(scene);
+  std::uint64_t rays = 0;
+  double steps = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const auto span = boxSpan(scene.volume->grid(), rayThroughPixel(inputs.views[0], x, y, kWidth, kHeight));
+      if (!span) continue;
+      ++rays;
+      steps += std::ceil((span->exit - span->entry) / 0.7);
+    }
+  }
+  const Drawn post = drawOnce(dvrRaymarch(), scene, inputs, kWidth, kHeight, kind("post", 0.7), true);
+  EXPECT_EQ(post.counters.at("rays"), rays);
+  EXPECT_NEAR(double(post.counters.at("samples")), steps, 5);
+  EXPECT_LT(post.counters.at("gradients"), post.counters.at("samples"));
+  EXPECT_GT(post.counters.at("gradients"), post.counters.at("samples") / 10);
+  // Slabs have one more sample a ray.
+  const Drawn slabs = drawOnce(dvrRaymarch(), scene, inputs, kWidth, kHeight, kind("preintegrated", 0.7), true);
+  EXPECT_NEAR(double(slabs.counters.at("samples")), steps + double(rays), 5);
+}
+
+TEST(DvrRaymarch, TakesNewTransferFunctions) {
+  const Scene scene = rippleScene();
+  FrameInputs inputs = inputsFor(scene, 0.1);
+  for (const char* name : {"post", "preintegrated"}) {
+    Session session(dvrRaymarch(), scene, withParameters(dvrRaymarch(), kind(name, 1)), {kWidth, kHeight, 1});
+    const Picture thin = session.draw(inputs).pictures[0];
+    FrameInputs dense = inputs;
+    dense.transferFunction = ramp(0.8);
+    EXPECT_TRUE(identical(session.draw(dense).pictures[0], draw(scene, dense, kind(name, 1))));
+    EXPECT_TRUE(identical(session.draw(inputs).pictures[0], thin));
+    dense.transferFunction = ramp(0);
+    const Picture nothing = session.draw(dense).pictures[0];
+    EXPECT_EQ(largestDifference(nothing, Picture(kWidth, kHeight)), 0);
+  }
+}
+
+TEST(DvrRaymarch, VolumesWithoutThicknessAreTransparent) {
+  const Scene scene = makeScene(makeVolume(ball, {40, 40, 1}, ScalarType::uint8), ShadingModel::none);
+  const FrameInputs inputs = makeInputs(lookAtBox(scene.volume->grid(), 20, 15, kWidth, kHeight), 0.3, 1.0);
+  for (const char* name : {"post", "preintegrated"})
+    EXPECT_EQ(largestDifference(draw(scene, inputs, kind(name, 1)), Picture(kWidth, kHeight)), 0);
+}
+
+TEST(DvrRaymarch, SaysWhatMemoryItUses) {
+  const Scene scene = rippleScene();
+  const FrameInputs inputs = inputsFor(scene);
+  const std::uint64_t before = device().ledger().totalBytes();
+  for (const char* name : {"post", "preintegrated"}) {
+    Session session(dvrRaymarch(), scene, withParameters(dvrRaymarch(), kind(name, 1)), {kWidth, kHeight, 1});
+    const std::uint64_t prepared = device().ledger().totalBytes();
+    session.draw(inputs);
+    EXPECT_EQ(device().ledger().totalBytes(), prepared);
+    std::uint64_t total = 0;
+    for (const gpu::MemoryItem& item : session.technique().memory())
+      total += item.bytes;
+    EXPECT_EQ(total, session.preparedBytes());
+  }
+  EXPECT_EQ(device().ledger().totalBytes(), before);
+}
+
+} // namespace
+} // namespace volmark::ray_march
