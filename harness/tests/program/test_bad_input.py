@@ -141,3 +141,16 @@ def test_missing_volume_names_the_way_to_get_it(volmark):
                                  "isovalues": {"a": {"normalized": 0.5}}}))
     document = {"set": {**SMALL, "scene": str(scene)}, "blocks": TECHNIQUE}
     refused(volmark, *run_scenario(volmark, document), says=["far.nrrd"])
+
+
+def test_every_point_is_checked_against_its_volume(volmark):
+    """A limit on voxels, and an isovalue of a later point: both are found before anything is written."""
+    write_volume(volmark, "uint8", "4 4 4", bytes(range(64)))
+    scene = volmark.folder / "small.json"
+    scene.write_text(json.dumps({"volmark_scene": 1, "title": "small", "volume": {"file": "v.nrrd"}}))
+    settings = {**SMALL, "scene": str(scene)}
+    refused(volmark, *run_scenario(volmark, {"set": settings, "blocks": TECHNIQUE, "limits": {"voxels": 63}}),
+            says=["64 voxels", "63"])
+    values = [{"raw": 10}, {"raw": 1000}]
+    blocks = [{**TECHNIQUE[0], "axes": {"isovalue": {"path": "isovalue", "values": values}}}]
+    refused(volmark, *run_scenario(volmark, {"set": settings, "blocks": blocks}), says=["isovalue"])
