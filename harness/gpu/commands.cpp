@@ -155,7 +155,6 @@ void Commands::submitAndWait() {
 }
 
 void Commands::begin() {
-  assert(!m_implementation->recording && "begin() while recording");
   wait();
   m_implementation->constants.reset();
   m_implementation->staging.reset();

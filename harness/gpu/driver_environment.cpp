@@ -31,6 +31,9 @@ std::string installedDrivers() {
   try {
     const Instance probe(nullptr);
     for (const VkPhysicalDevice device : probe.physicalDevices()) {
+      VkPhysicalDeviceProperties base;
+      vkGetPhysicalDeviceProperties(device, &base);
+      if (base.apiVersion < VK_API_VERSION_1_2) continue; // tells no driver version, and volmark can't use it
       VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
       VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver};
       vkGetPhysicalDeviceProperties2(device, &properties);

@@ -120,6 +120,22 @@ TEST_F(CommandsTest, ConstantsKeepTheirValuesThroughAFrame) {
   commands.clearUploads();
 }
 
+TEST_F(CommandsTest, BeginDropsWhatWasNotSubmitted) {
+  // What is left of a pass that threw.
+  const Pipeline pipeline = copyPipeline(device(), VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
+  const Buffer back = readback(device(), 2);
+  std::memset(back.mapped().data(), 0, 8);
+  Commands commands(device());
+  for (std::uint32_t place = 0; place < 2; ++place) {
+    commands.begin();
+    const Resource resources[] = {back.range(), commands.constants(std::uint32_t(9))};
+    commands.dispatch(pipeline, resources, bytesOf(place), {1, 1, 1});
+  }
+  commands.submit();
+  commands.wait();
+  EXPECT_EQ(wordsOf(back), (std::vector<std::uint32_t>{0, 9}));
+}
+
 TEST_F(CommandsTest, DispatchesIndirectly) {
   const Pipeline pipeline = copyPipeline(device(), VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
   const Buffer arguments(device(), {"arguments", 24, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, MemoryAccess::upload});

@@ -71,6 +71,10 @@ def test_frames_are_complete(experiment):
     for run in experiment.runs().values():
         frames, folder = frames_of(experiment, run)
         assert (frames.orbit_kind == "headline").sum() == 12
+        for kind in ("headline", "breakdown"):
+            for _, orbit in frames[frames.orbit_kind == kind].groupby("orbit"):
+                assert list(orbit.frame) == list(range(6))
+                assert numpy.allclose(orbit.phase, numpy.arange(6) / 6)
         headline = frames[frames.orbit_kind == "headline"]
         assert headline.gpu_ms.notna().all() and (headline.host_ms >= headline.gpu_ms * 0.9).all()
         assert frames[frames.orbit_kind == "breakdown"]["pass.march"].notna().all()

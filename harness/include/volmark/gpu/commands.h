@@ -97,7 +97,7 @@ public:
   void submitAndWait();
 
   // For the harness: one submission per frame.
-  void begin();        ///< waits for this slot's earlier submission, if any
+  void begin();        ///< waits for this slot's earlier submission; drops what was not submitted
   void submit();       ///< ends and submits with a fence; all writes are made visible to the host
   void wait();         ///< until that submission has finished; throws DeviceError after kGpuTimeout
   void clearUploads(); ///< frees oversized staging memory of a generation; not while recording or pending
