@@ -15,6 +15,18 @@ nlohmann::json vectorSchema(double minimum, double maximum) {
   return {{"type", "array"}, {"items", numberSchema(minimum, maximum)}, {"minItems", 3}, {"maxItems", 3}};
 }
 
+nlohmann::json parameterSchema(const ParameterDescriptor& parameter) {
+  nlohmann::json schema = {
+      {"type", std::string(typeNameOf(parameter.defaultValue))},
+      {"description",
+       parameter.documentation + (parameter.unit.empty() ? "" : fmt::format(" Unit: {}.", parameter.unit))}};
+  std::visit([&](const auto& value) { schema["default"] = value; }, parameter.defaultValue);
+  if (parameter.minimum) schema["minimum"] = *parameter.minimum;
+  if (parameter.maximum) schema["maximum"] = *parameter.maximum;
+  if (!parameter.choices.empty()) schema["enum"] = parameter.choices;
+  return schema;
+}
+
 nlohmann::json toJson(const glm::dvec3& v) {
   return {canonical(v.x), canonical(v.y), canonical(v.z)};
 }

@@ -20,6 +20,8 @@ inline double canonical(double value) {
 
 nlohmann::json numberSchema(double minimum, double maximum);
 nlohmann::json vectorSchema(double minimum, double maximum);
+/// Type, range, choices, default and documentation of a parameter.
+nlohmann::json parameterSchema(const ParameterDescriptor& parameter);
 nlohmann::json toJson(const glm::dvec3& v);
 glm::dvec3 vectorFrom(const JsonValue& value, double minimum, double maximum);
 /// Refuses vectors shorter than 1e-9. Unit vectors come back bit by bit.

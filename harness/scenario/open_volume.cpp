@@ -61,8 +61,8 @@ std::shared_ptr<const Volume> openVolume(const SceneDescription& scene, const Da
                                          std::uint64_t maximumBytes) {
   if (const auto* generator = std::get_if<GeneratorSource>(&scene.source)) {
     const GeneratorSettings& settings = generator->settings;
-    checkedVoxelBytes(fmt::format("scene {}", scene.name), {settings.dims, settings.spacingMm}, settings.type, 1,
-                      maximumBytes);
+    checkedVoxelBytes(fmt::format("scene {}", scene.name), {settings.dims, settings.spacingMm}, settings.type,
+                      timeStepsOf(settings), maximumBytes);
     return generateVolume(settings);
   }
   const std::filesystem::path path = requireVolumeFile(scene, data);

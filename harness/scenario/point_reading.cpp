@@ -114,7 +114,7 @@ void checkCombination(const Given& given, const PointSettings& settings) {
     given.fail(given.find("framing.front") ? "framing.front" : "framing.up", "up and front have to be orthogonal");
   if (const auto* source = std::get_if<GeneratorSource>(&settings.scene.source)) {
     try {
-      makeField(source->settings);
+      checkGenerator(source->settings);
     } catch (const InputError& error) {
       given.fail("volume.generator.parameters", error.what());
     }

@@ -71,7 +71,7 @@ GeneratorSource parseGenerator(const JsonValue& value) {
     for (const auto& [name, ignored] : parameters->json().items())
       settings.parameters[name] = parameters->member(name).number(-kAnyNumber, kAnyNumber);
     try {
-      makeField(settings);
+      checkGenerator(settings);
     } catch (const InputError& error) {
       parameters->fail(error.what());
     }

@@ -1,4 +1,4 @@
-#include "scenario/point_keys.h"
+#include "scenario/key_makers.h"
 #include "scenario/scenario.h"
 
 #include <nlohmann/json.hpp>
@@ -22,6 +22,23 @@ json object(json properties, const std::vector<std::string>& required) {
           {"additionalProperties", false}};
 }
 
+/// One alternative for each generator, with its parameters.
+json generatorSchema() {
+  json alternatives = json::array();
+  for (const std::string& name : generatorNames()) {
+    json parameters = json::object();
+    for (const ParameterDescriptor& parameter : generatorParameters(name))
+      parameters[parameter.name] = keys::parameterSchema(parameter);
+    alternatives.push_back(object({{"name", {{"const", name}}},
+                                   {"dims", schemaOf("volume.generator.dims")},
+                                   {"spacing_mm", schemaOf("volume.generator.spacing_mm")},
+                                   {"type", schemaOf("volume.generator.type")},
+                                   {"parameters", object(parameters, {})}},
+                                  {"name", "dims"}));
+  }
+  return {{"oneOf", alternatives}};
+}
+
 json volumeSchema() {
   const json text = {{"type", "string"}, {"minLength", 1}};
   json raw = object({{"file", text},
@@ -37,15 +54,9 @@ json volumeSchema() {
   raw["properties"]["dims"]["description"] = "Voxels along x, y, z.";
   raw["properties"]["type"]["description"] = "Scalar type.";
   raw["properties"]["spacing_mm"]["description"] = "Distance of voxel centres.";
-  const json generator = object({{"name", text},
-                                 {"dims", schemaOf("volume.generator.dims")},
-                                 {"spacing_mm", schemaOf("volume.generator.spacing_mm")},
-                                 {"type", schemaOf("volume.generator.type")},
-                                 {"parameters", schemaOf("volume.generator.parameters")}},
-                                {"name", "dims"});
   return {{"oneOf",
            {object({{"file", text}}, {"file"}), object({{"raw", raw}}, {"raw"}),
-            object({{"generator", generator}}, {"generator"})}}};
+            object({{"generator", generatorSchema()}}, {"generator"})}}};
 }
 
 json sourceSchema() {

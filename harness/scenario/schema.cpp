@@ -1,5 +1,5 @@
 // JSON Schemas for editors, made from the table of point keys and the catalogue. The reader stays the judge.
-#include "scenario/point_keys.h"
+#include "scenario/key_makers.h"
 #include "scenario/scenario.h"
 
 #include <fmt/format.h>
@@ -25,17 +25,6 @@ json documented(const PointKey& key) {
   schema["description"] = key.documentation + (key.unit.empty() ? "" : fmt::format(" Unit: {}.", key.unit)) +
                           (key.derivedDefault.empty() ? "" : fmt::format(" Default: {}.", key.derivedDefault));
   if (key.derivedDefault.empty()) schema["default"] = key.defaultValue();
-  return schema;
-}
-
-json parameterSchema(const ParameterDescriptor& parameter) {
-  json schema = {{"type", std::string(typeNameOf(parameter.defaultValue))},
-                 {"description",
-                  parameter.documentation + (parameter.unit.empty() ? "" : fmt::format(" Unit: {}.", parameter.unit))}};
-  std::visit([&](const auto& value) { schema["default"] = value; }, parameter.defaultValue);
-  if (parameter.minimum) schema["minimum"] = *parameter.minimum;
-  if (parameter.maximum) schema["maximum"] = *parameter.maximum;
-  if (!parameter.choices.empty()) schema["enum"] = parameter.choices;
   return schema;
 }
 
@@ -148,7 +137,7 @@ void addTechniques(const TechniqueCatalogue& techniques, json& set, json& block)
     const TechniqueInfo& info = entry.factory->info;
     json properties = json::object();
     for (const ParameterDescriptor& parameter : info.parameters)
-      properties[parameter.name] = parameterSchema(parameter);
+      properties[parameter.name] = keys::parameterSchema(parameter);
     const json parameters = closedObject(properties);
 
     json inSet;

@@ -169,6 +169,13 @@ TEST_F(SceneFile, ReadsGenerators) {
   expectError([&] { generator(R"(, "seed": 1)"); }, {"/volume/generator", "seed"});
 }
 
+TEST_F(SceneFile, TimeStepsOfGeneratorsCountAgainstMemory) {
+  const SceneDescription scene = read(R"({"volmark_scene": 1, "title": "t", "volume": {"generator":
+    {"name": "blast_wave", "dims": [4, 5, 6], "parameters": {"time_steps": 3}}}})");
+  EXPECT_EQ(openVolume(scene, {}, 360)->timeSteps(), 3);
+  expectError([&] { openVolume(scene, {}, 359); }, {"scene scene", "3 time steps (360 bytes), allowed: 359 bytes"});
+}
+
 TEST_F(SceneFile, FilesAreLookedForBesideTheSceneThenInOrder) {
   const SceneDescription scene = read(R"({"volmark_scene": 1, "title": "t", "source": {"url": "http://example.org/v"},
     "volume": {"raw": {"file": "v.raw", "dims": [2, 1, 1], "type": "uint16", "endian": "big", "offset_bytes": 1,

@@ -171,8 +171,16 @@ TEST_F(SchemaTest, AcceptsTheScenesThatAreHere) {
   std::vector<json> instances;
   for (const auto& entry : std::filesystem::directory_iterator(VOLMARK_SOURCE_DIR "/scenes"))
     if (entry.path().extension() == ".json") instances.push_back(readJsonFile(entry.path()));
+  const auto generated = [](const std::string& generator) {
+    return json::parse(R"({"volmark_scene": 1, "title": "a", "volume": {"generator": )" + generator + "}}");
+  };
+  instances.push_back(generated(R"({"name": "gyroid", "dims": [4, 4, 4], "parameters": {"periods": 2.5}})"));
   const std::size_t good = instances.size();
-  ASSERT_GT(good, 0u);
+  ASSERT_GT(good, 1u);
+  instances.push_back(generated(R"({"name": "gyroids", "dims": [4, 4, 4]})"));
+  instances.push_back(generated(R"({"name": "gyroid", "dims": [4, 4, 4], "parameters": {"period": 2}})"));
+  instances.push_back(generated(R"({"name": "gyroid", "dims": [4, 4, 4], "parameters": {"periods": 0}})"));
+  instances.push_back(generated(R"({"name": "blast_wave", "dims": [4, 4, 4], "parameters": {"time_steps": 2.5}})"));
   instances.push_back(json::parse(R"({"volmark_scene": 1, "title": "a", "volume": {"file": "a", "raw": {}}})"));
   instances.push_back(
       json::parse(R"({"volmark_scene": 1, "title": "a", "volume": {"file": "a"}, "isovalues": {"a": "b"}})"));

@@ -1,11 +1,7 @@
-// The fields that generators sample.
+// Fields in closed form.
 #pragma once
 
 #include "volume/generators/generator.h"
-
-#include <glm/glm.hpp>
-
-#include <vector>
 
 namespace volmark {
 
@@ -23,43 +19,62 @@ private:
   double m_amplitude; ///< alpha: share of the chirp
 };
 
-/// A head phantom of soft-edged ellipsoids, painted one over the other. Plateaus: kAir outside and in the
-/// sinus, kSkin, kBone for the skull and the sinus' wall, kBrain, kFluid in the ventricles. x points to the
-/// left ear, y to the back, z to the crown; the faces of the cube are air.
-class NestedEllipsoids : public Field {
+/// 0.5 on a surface, 1 where it is `band` or more inside, 0 where it is `band` or more outside, linear in the signed
+/// distance between.
+class DistanceField : public Field {
 public:
-  static constexpr double kAir = 0.0;
-  static constexpr double kSkin = 0.3;
-  static constexpr double kBone = 0.9;
-  static constexpr double kBrain = 0.45;
-  static constexpr double kFluid = 0.38;
+  explicit DistanceField(double band) : m_band(band) {}
 
-  /// `edgeWidth`: length over which a plateau turns into the next along an ellipsoid's shortest axis, more
-  /// along longer ones; the half-way value lies on the ellipsoid. `boneThickness`: of the skull along x.
-  NestedEllipsoids(double edgeWidth, double boneThickness);
+  /// To the surface, negative inside.
+  virtual double distance(const glm::dvec3& p) const = 0;
+  /// Gradient of the distance, a unit vector; 0 where there is none.
+  virtual glm::dvec3 direction(const glm::dvec3& p) const = 0;
 
   double value(const glm::dvec3& p) const override;
   glm::dvec3 gradient(const glm::dvec3& p) const override;
 
 private:
-  struct Layer {
-    glm::dvec3 centre;
-    glm::dvec3 semiAxes;
-    double plateau;
-  };
-  struct Share {
-    double value = 0; ///< how much the layer covers a point, [0,1]
-    glm::dvec3 gradient{0.0};
-  };
-  Share shareOf(const Layer& layer, const glm::dvec3& p) const;
-
-  double m_edgeWidth;
-  std::vector<Layer> m_layers; ///< in painting order
+  double m_band;
 };
 
-/// Sine and cosine of `t` quarter turns, |t| < 1e9, to about 1e-16: only +, - and * of doubles, so that results are
-/// the same on every machine, unlike those of the C library.
-double sineOfQuarterTurns(double t);
-double cosineOfQuarterTurns(double t);
+/// Around the origin.
+class Sphere : public DistanceField {
+public:
+  Sphere(double radius, double band) : DistanceField(band), m_radius(radius) {}
+
+  double distance(const glm::dvec3& p) const override;
+  glm::dvec3 direction(const glm::dvec3& p) const override;
+
+private:
+  double m_radius;
+};
+
+/// Around the z axis; the tube's centre line lies in z = 0.
+class Torus : public DistanceField {
+public:
+  Torus(double majorRadius, double minorRadius, double band)
+      : DistanceField(band), m_majorRadius(majorRadius), m_minorRadius(minorRadius) {}
+
+  double distance(const glm::dvec3& p) const override;
+  glm::dvec3 direction(const glm::dvec3& p) const override;
+
+private:
+  double m_majorRadius;
+  double m_minorRadius;
+};
+
+/// 0.5 + g/3 with the level function g = sin X cos Y + sin Y cos Z + sin Z cos X of Schoen's gyroid, |g| <= 3/2, where
+/// X, Y, Z are `periods` turns over the cube's width. Not a distance: near the surface that is about g / |grad g|,
+/// the wall bends too much for more.
+class Gyroid : public Field {
+public:
+  explicit Gyroid(double periods) : m_quarterTurns(2 * periods) {}
+
+  double value(const glm::dvec3& p) const override;
+  glm::dvec3 gradient(const glm::dvec3& p) const override;
+
+private:
+  double m_quarterTurns; ///< per unit length
+};
 
 } // namespace volmark

@@ -1,4 +1,5 @@
 #include "volume/generators/fields.h"
+#include "volume/generators/portable_math.h"
 
 #include <cmath>
 #include <numbers>

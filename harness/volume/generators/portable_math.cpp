@@ -1,6 +1,5 @@
-#include "volume/generators/fields.h"
+#include "volume/generators/portable_math.h"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -51,6 +50,40 @@ double cosineOfQuarterTurns(double t) {
   case 2: return -smallCosine(rest);
   default: return smallSine(rest);
   }
+}
+
+double power(double x, double y) {
+  // x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh((m-1)/(m+1)), whose terms fall by 1/34.
+  int e = 0;
+  double m = std::frexp(x, &e);
+  if (m < std::numbers::sqrt2 / 2) {
+    m *= 2;
+    --e;
+  }
+  const double z = (m - 1) / (m + 1);
+  double sum = 0;
+  for (int n = 25; n >= 1; n -= 2)
+    sum = sum * z * z + 1.0 / n;
+  const double exponent = y * (e + 2 * z * sum / std::numbers::ln2);
+
+  // 2^exponent = 2^whole exp(rest), |rest| <= ln(2)/2.
+  const double whole = std::floor(exponent + 0.5);
+  const double rest = (exponent - whole) * std::numbers::ln2;
+  double result = 1;
+  for (int n = 18; n >= 1; --n)
+    result = 1 + rest / n * result;
+  return std::ldexp(result, static_cast<int>(whole));
+}
+
+double smoothStep(double t) {
+  if (t <= 0) return 0;
+  if (t >= 1) return 1;
+  return t * t * t * (t * (6 * t - 15) + 10);
+}
+
+double smoothStepSlope(double t) {
+  if (t <= 0 || t >= 1) return 0;
+  return 30 * t * t * (t - 1) * (t - 1);
 }
 
 } // namespace volmark
