@@ -24,8 +24,8 @@ packages=(
   # analysis and tests
   libbenchmark-tools openexr python3 python3-jinja2 python3-jsonschema python3-matplotlib python3-numpy
   python3-pandas python3-pytest python3-scipy
-  # data: a real head CT
-  invesalius-examples
+  # data: a real head CT, a real head MRI
+  invesalius-examples mricron-data
 )
 # Held to the backports suite; everything else comes from bookworm itself.
 backports=(mesa-vulkan-drivers)

@@ -1,214 +1,233 @@
 #!/usr/bin/env python3
-"""Makes the volumes of scenes whose data comes with a Debian package.
+"""Brings the volumes of scenes: from Debian packages, over http(s), or from a folder.
 
-usage: fetch.py NAME [--to DIR] [--from FILE]
-       fetch.py --list
+A volume is written only if its voxels have the SHA-512 that the scene file names, under the name the scene file
+gives it, and all at once; a file of that name with other voxels is replaced. A headerless file gets an NRRD header
+in front. A download that was stopped (Ctrl-C, a lost connection) stays beside it as FILE.part, and the same command
+goes on from there if the server still has the same file. http_proxy, https_proxy and no_proxy are honoured.
 
-Nothing is downloaded. A volume is written only if its voxels have the SHA-512 that the scene file names.
+Without --to a volume counts as here if it is in one of the folders that volmark searches: beside the scene files,
+in those of VOLMARK_DATA, in scenes/data. States of --list: here, generated, missing, wrong (other voxels than the
+scene file says), unchecked (no SHA-512 is given, or none can be computed from this kind of file).
+
+exit codes: 0 all volumes are there, 1 at least one could not be brought, 2 bad input and nothing was tried,
+130 interrupted.
 """
 import argparse
-import difflib
-import hashlib
-import json
+import contextlib
 import os
-import plistlib
 import sys
-import tarfile
-import tempfile
-import xml.parsers.expat
-import zlib
 from pathlib import Path
 
+from fetching import FetchError
+from fetching.download import download
+from fetching.inv3 import read_inv3
+from fetching.packages import package_file
+from fetching.part_file import PartFile
+from fetching.progress import Progress
+from fetching.scene import find_scene, read_scenes
+from fetching.voxels import CHUNK_BYTES, UncheckableError, nrrd_header, voxels_sha512
+
 SCENES = Path(__file__).resolve().parent
-PACKAGE_FILES = {"invesalius-examples": Path("/usr/share/doc/invesalius-examples/examples/Cranium.inv3")}
-BYTES_PER_TYPE = {"int16": 2}
-MAXIMUM_BYTES = 1 << 30
-MAXIMUM_HEADER_BYTES = 1 << 16
 
 
-class FetchError(Exception):
-    """One line for the user."""
-
-
-def read_scenes():
-    """Scene documents by name."""
-    scenes = {}
-    for path in sorted(SCENES.glob("*.json")):
-        try:
-            scenes[path.stem] = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise FetchError(f"{path}: {error}") from None
-    return scenes
-
-
-def find_scene(scenes, name):
-    if name in scenes:
-        return scenes[name]
-    nearest = difflib.get_close_matches(name, scenes, n=1)
-    hint = f", did you mean {nearest[0]}?" if nearest else f", allowed: {', '.join(scenes)}"
-    raise FetchError(f"there is no scene {name}{hint}")
-
-
-def package_of(scene):
-    return scene.get("source", {}).get("package")
-
-
-def member_named(archive, name):
-    for member in archive.getmembers():
-        if member.isfile() and Path(member.name).name == name:
-            return member
-    raise FetchError(f"{archive.name}: there is no {name} in it")
-
-
-def read_member(archive, name, size):
-    """The content of a member of at most, or (if it is given) exactly, `size` bytes."""
-    member = member_named(archive, name)
-    if member.size > size:
-        raise FetchError(f"{archive.name}: {name} has {member.size} bytes, expected {size}")
-    return archive.extractfile(member).read()
-
-
-def reverse_rows(voxels, rows, row_bytes):
-    """Reverses the order of the rows of every slice."""
-    flipped = bytearray(len(voxels))
-    slice_bytes = rows * row_bytes
-    for start in range(0, len(voxels), slice_bytes):
-        for row in range(rows):
-            source = start + row * row_bytes
-            target = start + (rows - 1 - row) * row_bytes
-            flipped[target : target + row_bytes] = voxels[source : source + row_bytes]
-    return bytes(flipped)
-
-
-def read_inv3(path):
-    """Dims (x, y, z), spacing (mm), type and voxels of an InVesalius project.
-
-    InVesalius keeps the rows from back to front and mirrors its surfaces when it makes them. Reversing the
-    rows gives a right-handed volume: x to the patient's left, y to the back, z to the crown.
-    """
-    try:
-        with tarfile.open(path, "r:gz") as archive:
-            project = plistlib.loads(read_member(archive, "main.plist", MAXIMUM_HEADER_BYTES))
-            matrix = project["matrix"]
-            depth, rows, columns = (int(n) for n in matrix["shape"])
-            scalar_type = matrix["dtype"]
-            if scalar_type not in BYTES_PER_TYPE or min(depth, rows, columns) < 1:
-                raise FetchError(f"{path}: found {columns} x {rows} x {depth} voxels of {scalar_type}, allowed: int16")
-            row_bytes = columns * BYTES_PER_TYPE[scalar_type]
-            expected = depth * rows * row_bytes
-            if expected > MAXIMUM_BYTES:
-                raise FetchError(f"{path}: {expected} bytes of voxels, allowed: {MAXIMUM_BYTES}")
-            voxels = read_member(archive, "matrix.dat", expected)
-            spacing = tuple(float(length) for length in project["spacing"])
-    except (tarfile.TarError, OSError, EOFError, zlib.error) as error:
-        raise FetchError(f"{path}: can't be read: {error}") from None
-    except (KeyError, TypeError, ValueError, plistlib.InvalidFileException, xml.parsers.expat.ExpatError) as error:
-        raise FetchError(f"{path}: not an InVesalius project: {error!r}") from None
-    if len(voxels) != expected:
-        raise FetchError(f"{path}: matrix.dat has {len(voxels)} bytes, expected {expected}")
-    return (columns, rows, depth), spacing, scalar_type, reverse_rows(voxels, rows, row_bytes)
-
-
-def check_voxels(place, voxels, sha512):
-    found = hashlib.sha512(voxels).hexdigest()
-    if found != sha512:
-        raise FetchError(f"{place}: the voxels' SHA-512 is {found[:16]}..., the scene file says {sha512[:16]}...")
-
-
-def nrrd_header(name, package, dims, spacing, scalar_type):
-    return (
-        f"NRRD0004\n# Converted from the Debian package {package}\ntype: {scalar_type}\ndimension: 3\n"
-        f"sizes: {' '.join(map(str, dims))}\nspacings: {' '.join(map(repr, spacing))}\n"
-        f"endian: little\nencoding: raw\ncontent: {name}\n\n"
-    ).encode("ascii")
-
-
-def write_atomically(path, *parts):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            for part in parts:
-                file.write(part)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except BaseException:
-        os.unlink(temporary)
-        raise
-
-
-def is_whole(path, sha512):
-    """Whether a file that this script wrote has the voxels of the scene file."""
-    if not path.is_file():
-        return False
-    _, blank_line, voxels = path.read_bytes().partition(b"\n\n")
-    return bool(blank_line) and hashlib.sha512(voxels).hexdigest() == sha512
-
-
-def fetch(name, folder, source):
-    """Writes the scene's volume to a folder unless it is there. Returns what was done, as one line."""
-    scene = find_scene(read_scenes(), name)
-    package = package_of(scene)
-    if "generator" in scene["volume"]:
-        return f"{name}: its volume is generated, there is nothing to fetch"
-    if package is None:
-        url = scene.get("source", {}).get("url", "its source")
-        raise FetchError(f"{name}: no package has this volume; it comes from {url}")
-    sha512 = scene["source"]["sha512"]
-    target = folder / scene["volume"]["file"]
-    if is_whole(target, sha512):
-        return f"{name}: {target} is there already"
-
-    source = source or PACKAGE_FILES[package]
-    if not source.is_file():
-        raise FetchError(f"{source} is missing: install the Debian package {package} (ci/bootstrap.sh does)")
-    dims, spacing, scalar_type, voxels = read_inv3(source)
-    check_voxels(source, voxels, sha512)
-    write_atomically(target, nrrd_header(name, package, dims, spacing, scalar_type), voxels)
-    return f"{name}: wrote {target}, {' x '.join(map(str, dims))} voxels of {scalar_type}"
-
-
-def data_folders(folder):
+def folders_of(to):
+    """Where volumes are looked for, in order; the last one is where they are written."""
+    if to:
+        return [to]
     listed = os.environ.get("VOLMARK_DATA", "").split(":")
-    return [SCENES, *(Path(part) for part in listed if part), folder]
+    return [SCENES, *(Path(part) for part in listed if part), SCENES / "data"]
 
 
-def state_of(scene, folder):
-    volume = scene["volume"]
-    if "generator" in volume:
+def find_volume(scene, folders):
+    return next((folder / scene.file for folder in folders if (folder / scene.file).is_file()), None)
+
+
+def state_of(scene, path):
+    """Of a volume file; None for a missing one."""
+    if scene.is_generated:
         return "generated"
-    file = volume["file"] if "file" in volume else volume["raw"]["file"]
-    if any((candidate / file).is_file() for candidate in data_folders(folder)):
-        return "here"
-    return "to fetch" if package_of(scene) else "missing"
+    if path is None:
+        return "missing"
+    if not scene.sha512:
+        return "unchecked"
+    try:
+        return "here" if voxels_sha512(path, scene.file, scene.raw_offset) == scene.sha512 else "wrong"
+    except UncheckableError:
+        return "unchecked"
 
 
-def list_scenes(folder):
-    scenes = read_scenes()
-    width = max(map(len, scenes), default=0)
-    return [f"{name:<{width}}  {state_of(scene, folder):<9}  {scene['title']}" for name, scene in scenes.items()]
+def commit(scene, part, place):
+    found = voxels_sha512(part.path, scene.file, scene.raw_offset)
+    if found != scene.sha512:
+        part.discard()
+        shown = f"SHA-512 is {found[:16]}..." if found else "file is damaged"
+        raise FetchError(f"{place}: the voxels' {shown}, the scene file says {scene.sha512[:16]}...")
+    part.commit()
+
+
+def header_of(scene, origin):
+    """What goes in front of a headerless file."""
+    return nrrd_header(scene.name, origin, scene.layout) if scene.layout else b""
+
+
+def fetch_url(scene, target, progress):
+    size = scene.layout.bytes if scene.layout else None
+    with PartFile(target, header_of(scene, scene.url)) as part:
+        try:
+            download(scene.url, part, size, progress)
+        except KeyboardInterrupt:
+            progress.say(f"stopped at {part.body_bytes / 1e6:.1f} MB; the same command goes on from there")
+            raise
+        commit(scene, part, scene.url)
+
+
+def chunks_of(path):
+    with open(path, "rb") as file:
+        while chunk := file.read(CHUNK_BYTES):
+            yield chunk
+
+
+def contents_of(scene, path):
+    """Header, body in chunks, and length of the body that a file becomes."""
+    if path.suffix == ".inv3":
+        layout, voxels = read_inv3(path)
+        return nrrd_header(scene.name, f"the Debian package {scene.package}", layout), [voxels], len(voxels)
+    size = path.stat().st_size
+    if path.name == scene.file or not scene.layout:
+        return b"", chunks_of(path), size
+    if size != scene.layout.bytes:
+        raise FetchError(f"{path}: found {size} bytes, expected {scene.layout.bytes}")
+    return header_of(scene, scene.url), chunks_of(path), size
+
+
+def copy_file(scene, path, target, progress):
+    header, chunks, size = contents_of(scene, path)
+    with PartFile(target, header) as part:
+        try:
+            part.restart()
+            part.require_space(size)
+            progress.start(0, size)
+            for chunk in chunks:
+                part.append(chunk)
+                progress.advance(len(chunk))
+            progress.end()
+        except BaseException:
+            part.discard()
+            raise
+        commit(scene, part, path)
+
+
+@contextlib.contextmanager
+def file_in_folder(scene, folder):
+    """The volume's file itself, or that of its source."""
+    names = [scene.file, Path(scene.package_file).name, scene.url.rpartition("/")[2]]
+    for name in filter(None, names):
+        if (folder / name).is_file():
+            yield folder / name
+            return
+    raise FetchError(f"{folder}: there is none of {', '.join(filter(None, names))}")
+
+
+def fetch(scene, folders, source, progress):
+    """Makes sure that the scene's volume is there. Returns one line that says where."""
+    if scene.is_generated:
+        return f"{scene.name}: its volume is generated, there is nothing to fetch"
+    found = find_volume(scene, folders)
+    state = state_of(scene, found)
+    if state == "here":
+        return f"{scene.name}: {found} is there already"
+    if not scene.sha512:
+        raise FetchError("its scene file names no sha512, so that nothing can be checked")
+    if state == "unchecked":
+        raise FetchError(f"{found} is there and its voxels can't be checked: it stays")
+    target = folders[-1] / scene.file
+    if source:
+        with file_in_folder(scene, source) as path:
+            copy_file(scene, path, target, progress)
+    elif scene.package:
+        with package_file(scene.package, scene.package_file, progress.say) as path:
+            copy_file(scene, path, target, progress)
+    elif scene.url:
+        fetch_url(scene, target, progress)
+    else:
+        raise FetchError(f"{scene.file} is not published anywhere, so it can't be fetched. {scene.note}".rstrip())
+    if found and found != target:
+        progress.say(f"note: {found} has other voxels and is found first")
+    return f"{scene.name}: wrote {target}"
+
+
+def fetch_all(scenes, folders, source):
+    """Exit code. Goes on after a volume that could not be brought."""
+    failed = False
+    for scene in scenes:
+        try:
+            print(fetch(scene, folders, source, Progress(scene.name)), flush=True)
+        except (FetchError, OSError) as error:
+            print(f"fetch.py: {scene.name}: {error}", file=sys.stderr, flush=True)
+            failed = True
+    return 1 if failed else 0
+
+
+def size_text(scene, path):
+    size = path.stat().st_size if path else scene.layout.bytes if scene.layout else None
+    return f"{size / 1e6:.1f} MB" if size else "-"
+
+
+def source_text(scene):
+    if scene.package:
+        return f"Debian package {scene.package}"
+    return scene.url or ("-" if scene.is_generated else "not published")
+
+
+def list_scenes(scenes, folders):
+    rows = [("name", "state", "size", "license", "source")]
+    for scene in scenes.values():
+        path = None if scene.is_generated else find_volume(scene, folders)
+        license_text = scene.license or ("-" if scene.is_generated else "not stated")
+        rows.append((scene.name, state_of(scene, path), size_text(scene, path), license_text, source_text(scene)))
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    for name, state, size, license_text, source in rows:
+        cells = [name.ljust(widths[0]), state.ljust(widths[1]), size.rjust(widths[2]), license_text.ljust(widths[3])]
+        print("  ".join([*cells, source]))
+
+
+def parse(arguments):
+    summary, _, more = __doc__.partition("\n\n")
+    parser = argparse.ArgumentParser(
+        prog="fetch.py", description=summary, epilog=more, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("names", nargs="*", metavar="NAME", help="scenes whose volumes to bring")
+    parser.add_argument("--all", action="store_true", help="all scenes whose volumes are published somewhere")
+    parser.add_argument("--list", action="store_true", help="show every scene: state, size, license, source")
+    parser.add_argument("--to", type=Path, metavar="DIR", help="look and write there only; default: scenes/data")
+    parser.add_argument("--from", type=Path, dest="source", metavar="DIR", help="copy from this folder instead")
+    options = parser.parse_args(arguments)
+    if bool(options.names) + options.all + options.list != 1:
+        parser.error("give names of scenes, --all or --list")
+    if options.source and (options.list or not options.source.is_dir()):
+        parser.error(f"--from: found {options.source}, allowed: a folder, and not with --list")
+    return options
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="fetch.py", description=__doc__.splitlines()[0])
-    parser.add_argument("name", nargs="?", help="a scene whose volume comes with a Debian package")
-    parser.add_argument("--to", type=Path, default=SCENES / "data", metavar="DIR", help="default: scenes/data")
-    parser.add_argument("--from", type=Path, dest="source", metavar="FILE", help="instead of the package's file")
-    parser.add_argument("--list", action="store_true", help="show all scenes and whether their volumes are here")
-    options = parser.parse_args(arguments)
-    if options.list == (options.name is not None):
-        parser.error("give a scene's name or --list")
+    options = parse(arguments)
+    folders = folders_of(options.to)
     try:
-        if options.list:
-            print("\n".join(list_scenes(options.to)))
-        else:
-            print(fetch(options.name, options.to, options.source))
+        scenes = read_scenes(SCENES)
+        wanted = [find_scene(scenes, name) for name in dict.fromkeys(options.names)]
     except (FetchError, OSError) as error:
         print(f"fetch.py: {error}", file=sys.stderr)
-        return 1
-    return 0
+        return 2
+    try:
+        if options.list:
+            list_scenes(scenes, folders)
+            return 0
+        if options.all:
+            wanted = [scene for scene in scenes.values() if scene.is_fetchable]
+        return fetch_all(wanted, folders, options.source)
+    except KeyboardInterrupt:
+        return 130
 
 
 if __name__ == "__main__":

@@ -80,15 +80,22 @@ GeneratorSource parseGenerator(const JsonValue& value) {
   return source;
 }
 
-RawSource parseRaw(const JsonValue& value) {
-  JsonObject object(value);
-  RawSource source;
-  RawDescription& raw = source.description;
-  source.file = object.at("file").text();
+/// What must be known of any file without a header.
+RawDescription parseLayout(JsonObject& object) {
+  RawDescription raw;
   raw.grid.dims = dimsOf(object.at("dims"), kLargestDimension);
   raw.type = scalarTypeFromName(object.at("type").choice(kTypeNames));
   if (const auto spacing = object.find("spacing_mm"))
     raw.grid.spacingMm = vectorOf(*spacing, kSmallestSpacing, kLargestSpacing);
+  return raw;
+}
+
+RawSource parseRaw(const JsonValue& value) {
+  JsonObject object(value);
+  RawSource source;
+  source.file = object.at("file").text();
+  source.description = parseLayout(object);
+  RawDescription& raw = source.description;
   if (const auto endian = object.find("endian")) raw.bigEndian = endian->choice({"little", "big"}) == "big";
   if (const auto offset = object.find("offset_bytes"))
     raw.offsetBytes = static_cast<std::uint64_t>(offset->integer(0, std::int64_t(1) << 40));
@@ -110,10 +117,13 @@ void parseVolume(const JsonValue& value, SceneDescription& scene) {
   if (generator) scene.source = parseGenerator(*generator);
 }
 
+/// scenes/fetch.py is who uses it all.
 void parseSource(const JsonValue& value, SceneDescription& scene) {
   JsonObject object(value);
   const auto package = object.find("package");
+  const auto packageFile = object.find("package_file");
   const auto url = object.find("url");
+  const auto raw = object.find("raw");
   const auto license = object.find("license");
   const auto sha512 = object.find("sha512");
   for (const char* name : {"acknowledgement", "note"})
@@ -121,11 +131,17 @@ void parseSource(const JsonValue& value, SceneDescription& scene) {
   object.refuseOthers();
 
   if (license) scene.license = license->text();
-  if (url) scene.fetchHint = url->text();
-  if (package) {
-    package->text();
-    scene.fetchHint = fmt::format("scenes/fetch.py {}", scene.name);
+  if (url) url->text();
+  if (raw) {
+    if (!url) value.fail("\"raw\" describes the file at \"url\", which is missing");
+    JsonObject layout(*raw);
+    parseLayout(layout);
+    layout.refuseOthers();
   }
+  if (package.has_value() != packageFile.has_value()) value.refuse("\"package\" and \"package_file\", or neither");
+  if (package) package->text();
+  if (packageFile && !packageFile->text().starts_with('/')) packageFile->refuse("an absolute path");
+  if (package || url) scene.fetchHint = fmt::format("scenes/fetch.py {}", scene.name);
   if (sha512) {
     const std::string digits = sha512->text();
     if (digits.size() != 128 || digits.find_first_not_of("0123456789abcdef") != std::string::npos)

@@ -43,9 +43,9 @@ struct SceneDescription {
   std::string title;
   std::filesystem::path path; ///< of the scene file; empty for a scene made from a bare volume file
   std::variant<GeneratorSource, FileSource, RawSource> source;
-  std::string fetchHint; ///< how to get a missing file: "scenes/fetch.py cranium_ct", an address, or empty
-  std::string license;   ///< empty if the scene file names none
-  std::optional<Range> visualisationRange;                 ///< data's unit
+  std::string fetchHint;                   ///< how to get a missing file: "scenes/fetch.py cranium_ct", or empty
+  std::string license;                     ///< empty if the scene file names none
+  std::optional<Range> visualisationRange; ///< data's unit
   std::vector<std::pair<std::string, Isovalue>> isovalues; ///< in file order; the first is default
   std::vector<std::pair<std::string, TransferFunction>> transferFunctions;
   Framing framing;

@@ -39,21 +39,28 @@ json generatorSchema() {
   return {{"oneOf", alternatives}};
 }
 
+/// What must be known of any file without a header.
+json layoutSchema() {
+  json layout = object({{"dims", schemaOf("volume.generator.dims")},
+                        {"type", schemaOf("volume.generator.type")},
+                        {"spacing_mm", schemaOf("volume.generator.spacing_mm")}},
+                       {"dims", "type"});
+  // One voxel along an axis is a volume too, if it comes from a file.
+  layout["properties"]["dims"]["items"] = {{"type", "integer"}, {"minimum", 1}};
+  layout["properties"]["dims"]["description"] = "Voxels along x, y, z.";
+  layout["properties"]["type"]["description"] = "Scalar type.";
+  layout["properties"]["spacing_mm"]["description"] = "Distance of voxel centres.";
+  return layout;
+}
+
 json volumeSchema() {
   const json text = {{"type", "string"}, {"minLength", 1}};
-  json raw = object({{"file", text},
-                     {"dims", schemaOf("volume.generator.dims")},
-                     {"type", schemaOf("volume.generator.type")},
-                     {"spacing_mm", schemaOf("volume.generator.spacing_mm")},
-                     {"endian", {{"enum", {"little", "big"}}}},
-                     {"offset_bytes", {{"type", "integer"}, {"minimum", 0}}},
-                     {"time_steps", {{"type", "integer"}, {"minimum", 1}}}},
-                    {"file", "dims", "type"});
-  // One voxel along an axis is a volume too, if it comes from a file.
-  raw["properties"]["dims"]["items"] = {{"type", "integer"}, {"minimum", 1}};
-  raw["properties"]["dims"]["description"] = "Voxels along x, y, z.";
-  raw["properties"]["type"]["description"] = "Scalar type.";
-  raw["properties"]["spacing_mm"]["description"] = "Distance of voxel centres.";
+  json raw = layoutSchema();
+  raw["properties"]["file"] = text;
+  raw["properties"]["endian"] = {{"enum", {"little", "big"}}};
+  raw["properties"]["offset_bytes"] = {{"type", "integer"}, {"minimum", 0}};
+  raw["properties"]["time_steps"] = {{"type", "integer"}, {"minimum", 1}};
+  raw["required"].push_back("file");
   return {{"oneOf",
            {object({{"file", text}}, {"file"}), object({{"raw", raw}}, {"raw"}),
             object({{"generator", generatorSchema()}}, {"generator"})}}};
@@ -63,8 +70,14 @@ json sourceSchema() {
   json properties = json::object();
   for (const char* key : {"package", "url", "license", "acknowledgement", "note"})
     properties[key] = {{"type", "string"}, {"minLength", 1}};
+  properties["package_file"] = {{"type", "string"}, {"pattern", "^/"}};
+  properties["raw"] = layoutSchema();
+  properties["raw"]["description"] = "Of the file at \"url\" if it has no header; little-endian.";
   properties["sha512"] = {{"type", "string"}, {"pattern", "^[0-9a-f]{128}$"}};
   json schema = object(properties, {});
+  schema["dependentRequired"] = {{"package", json::array({"package_file"})},
+                                 {"package_file", json::array({"package"})},
+                                 {"raw", json::array({"url"})}};
   schema["description"] = "Where the data comes from.";
   return schema;
 }

@@ -18,7 +18,8 @@ constexpr std::uint64_t kNoLimit = std::uint64_t(1) << 40;
 
 const char* const kWhole = R"({
   "volmark_scene": 1, "title": "A title", "volume": {"file": "v.nrrd"},
-  "source": {"package": "some-package", "url": "http://example.org/v", "license": "CC0", "acknowledgement": "them", "note": "a part",
+  "source": {"package": "some-package", "package_file": "/usr/share/v", "url": "http://example.org/v",
+             "raw": {"dims": [4, 3, 2], "type": "uint8", "spacing_mm": [1, 1, 2]}, "license": "CC0", "acknowledgement": "them", "note": "a part",
              "sha512": "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"},
   "visualisation_range": [-1000, 2000],
   "isovalues": {"skin": {"raw": -400}, "bone": {"raw": 300}, "air": {"normalized": 0.1}},
@@ -122,6 +123,13 @@ TEST_F(SceneFile, RefusesWhatItDoesNotKnow) {
   expectRefused(R"({"volume": {"file": null}})", {"/volume", "exactly one of"});
   expectRefused(R"({"source": {"sha512": "12ab"}})", {"/source/sha512", "128 hexadecimal digits"});
   expectRefused(R"({"source": {"licence": "CC0"}})", {"/source", "licence", "license"});
+  expectRefused(R"({"source": {"package": null}})", {"/source", "\"package\" and \"package_file\", or neither"});
+  expectRefused(R"({"source": {"package_file": null}})", {"/source", "\"package\" and \"package_file\", or neither"});
+  expectRefused(R"({"source": {"package_file": "v"}})", {"/source/package_file", "found \"v\"", "absolute path"});
+  expectRefused(R"({"source": {"url": null}})", {"/source", "\"raw\" describes the file at \"url\""});
+  expectRefused(R"({"source": {"raw": {"dims": [4, 3]}}})", {"/source/raw/dims", "[x, y, z]"});
+  expectRefused(R"({"source": {"raw": {"type": "float64"}}})", {"/source/raw/type", "float32"});
+  expectRefused(R"({"source": {"raw": {"file": "v.raw"}}})", {"/source/raw", "file"});
   expectRefused(R"({"visualisation_range": [5, 5]})", {"/visualisation_range", "smallest < largest"});
   expectRefused(R"({"isovalues": {"bone": {"normalized": 0.5}}})", {"/isovalues/bone"});
   expectRefused(R"({"isovalues": {"bone": {"raw": null, "normalized": 1.5}}})", {"/isovalues/bone/normalized", "1.5"});
@@ -184,7 +192,7 @@ TEST_F(SceneFile, FilesAreLookedForBesideTheSceneThenInOrder) {
   const DataFolders data{{m_folder / "data", m_folder / "more"}};
   expectError([&] { openVolume(scene, data, kNoLimit); },
               {"scene scene: there is no v.raw in ", (m_folder / "data").string(), (m_folder / "more").string(),
-               "to get it: http://example.org/v"});
+               "to get it: scenes/fetch.py scene"});
   const auto firstVoxel = [&] { return openVolume(scene, data, kNoLimit)->value(0, 0, 0); };
   write("more/v.raw", std::string("x\0\3\0\0\0\0\0\0", 9));
   EXPECT_EQ(firstVoxel(), 3);

@@ -186,6 +186,12 @@ TEST_F(SchemaTest, AcceptsTheScenesThatAreHere) {
       json::parse(R"({"volmark_scene": 1, "title": "a", "volume": {"file": "a"}, "isovalues": {"a": "b"}})"));
   instances.push_back(json::parse(R"({"volmark_scene": 1, "title": "a", "volume": {"file": "a"}, "framings": {}})"));
   instances.push_back(json::parse(R"({"title": "a", "volume": {"file": "a"}})"));
+  for (const char* source :
+       {R"({"package": "a"})", R"({"package_file": "/a"})", R"({"package": "a", "package_file": "a"})",
+        R"({"raw": {"dims": [1, 1, 1], "type": "int8"}})", R"({"url": "a", "raw": {"dims": [1, 1, 1]}})"}) {
+    instances.push_back(json::parse(R"({"volmark_scene": 1, "title": "a", "volume": {"file": "a"}})"));
+    instances.back()["source"] = json::parse(source);
+  }
   JUDGE_OR_SKIP(verdicts, sceneSchema(), instances);
   ASSERT_EQ(verdicts.size(), instances.size());
   for (std::size_t i = 0; i < instances.size(); ++i)
