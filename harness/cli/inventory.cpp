@@ -111,6 +111,13 @@ std::string shadingText(const TechniqueInfo& info) {
   return fmt::format("{}", fmt::join(models, ", "));
 }
 
+std::string layersText(const TechniqueInfo& info) {
+  std::string text = "colour and distance";
+  for (const PictureLayer layer : info.layers)
+    text += layer == PictureLayer::normal ? ", normal (N)" : ", steps";
+  return text;
+}
+
 int describe(const std::string& name) {
   const TechniqueCatalogue catalogue = loadCatalogue();
   const CatalogueEntry& entry = catalogue.get(name);
@@ -118,9 +125,10 @@ int describe(const std::string& name) {
   constexpr const char* draws[] = {"isosurface", "volume", "isosurface and volume"};
   fmt::print("{}: {}\n", info.name, info.summary);
   if (!info.paper.empty()) fmt::print("  paper    {}, {}\n", info.paper, info.section);
-  fmt::print("  family   {}\n  draws    {}\n  history  {}\n  runs on  {}\n  views    up to {}\n  shading  {}\n",
-             entry.family, draws[static_cast<int>(info.draws)], historyText(info.history),
-             info.needsGpu ? "a Vulkan device" : "the host alone", info.maximumViews, shadingText(info));
+  fmt::print(
+      "  family   {}\n  draws    {}\n  history  {}\n  runs on  {}\n  views    up to {}\n  shading  {}\n  layers   {}\n",
+      entry.family, draws[static_cast<int>(info.draws)], historyText(info.history),
+      info.needsGpu ? "a Vulkan device" : "the host alone", info.maximumViews, shadingText(info), layersText(info));
   fmt::print("\nparameters (technique.parameters.NAME):\n");
   for (const ParameterDescriptor& parameter : info.parameters)
     fmt::print("  {:<24} {}\n  {:<24}   default {}; {}\n", parameter.name, parameter.documentation, "",

@@ -81,6 +81,11 @@ int render(const RenderArguments& arguments) {
     session.reset();
     const CompletedFrame frame = session.draw(arguments.phase, 0, StampMode::headline);
     pictures = session.pictures();
+    if (!session.info().layers.empty()) {
+      session.reset();
+      session.draw(arguments.phase, 0, StampMode::headline, true);
+      session.addLayers(pictures);
+    }
     time = fmt::format(", {:.1f} ms", frame.endMs - frame.startMs);
     if (session.device())
       for (const std::string& message : session.device()->validationMessages())

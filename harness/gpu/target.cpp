@@ -37,41 +37,58 @@ void recordCopy(Commands& commands, const Image& image, int layer, const Buffer&
   commands.transition(image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL, kTransferRead, kAnything);
 }
 
+/// The texels of one layer.
+template <class Texel> std::vector<Texel> readAll(Device& device, const Image& image, int layer, std::size_t pixels) {
+  const Buffer buffer = readbackBuffer(device, pixels * sizeof(Texel));
+  Commands commands(device);
+  commands.begin();
+  recordCopy(commands, image, layer, buffer);
+  commands.barrier(kTransferWrite, kHostRead);
+  commands.submit();
+  commands.wait();
+  std::vector<Texel> texels(pixels);
+  std::memcpy(texels.data(), buffer.mapped().data(), pixels * sizeof(Texel));
+  return texels;
+}
+
 } // namespace
 
-Target::Target(Device& device, int width_, int height_, int views_)
+Target::Target(Device& device, int width_, int height_, int views_, const std::vector<PictureLayer>& layers)
     : width(width_), height(height_), views(views_),
       color(device, layered("target colour", kColorFormat, width, height, views)),
       distance(device, layered("target distance", kDepthFormat, width, height, views)) {
+  for (const PictureLayer layer : layers) {
+    if (layer == PictureLayer::normal)
+      normal = Image(device, layered("target normal", kNormalFormat, width, height, views));
+    if (layer == PictureLayer::steps)
+      steps = Image(device, layered("target steps", kStepsFormat, width, height, views));
+  }
 }
 
 void Target::initialise(Commands& commands) const {
-  for (const Image* image : {&color, &distance})
-    commands.transition(*image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kAnything, kAnything);
+  for (const Image* image : {&color, &distance, &normal, &steps})
+    if (*image) commands.transition(*image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kAnything, kAnything);
 }
 
 Picture readBack(Device& device, const Target& target, int view) {
   assert(view >= 0 && view < target.views);
   Picture picture(target.width, target.height);
   const std::size_t pixels = picture.color.size();
-  const Buffer color = readbackBuffer(device, pixels * sizeof(std::uint64_t));
-  const Buffer distance = readbackBuffer(device, pixels * sizeof(float));
-
-  Commands commands(device);
-  commands.begin();
-  recordCopy(commands, target.color, view, color);
-  recordCopy(commands, target.distance, view, distance);
-  commands.barrier(kTransferWrite, kHostRead);
-  commands.submit();
-  commands.wait();
-
-  for (std::size_t i = 0; i < pixels; ++i) {
-    std::uint64_t packed;
-    std::memcpy(&packed, color.mapped().data() + i * sizeof packed, sizeof packed);
-    picture.color[i] = glm::unpackHalf4x16(packed);
-  }
-  std::memcpy(picture.distance.data(), distance.mapped().data(), pixels * sizeof(float));
+  const auto colors = readAll<std::uint64_t>(device, target.color, view, pixels);
+  for (std::size_t i = 0; i < pixels; ++i)
+    picture.color[i] = glm::unpackHalf4x16(colors[i]);
+  picture.distance = readAll<float>(device, target.distance, view, pixels);
   return picture;
+}
+
+void readBackLayers(Device& device, const Target& target, int view, Picture& picture) {
+  assert(view >= 0 && view < target.views);
+  const std::size_t pixels = picture.color.size();
+  if (target.normal) {
+    const std::vector<glm::vec4> normals = readAll<glm::vec4>(device, target.normal, view, pixels);
+    picture.normal.assign(normals.begin(), normals.end());
+  }
+  if (target.steps) picture.steps = readAll<float>(device, target.steps, view, pixels);
 }
 
 } // namespace volmark::gpu

@@ -1,4 +1,5 @@
-// OpenEXR: R G B A half, Z float; stereo as multi-view; camera matrices and the run's hash as attributes.
+// OpenEXR: R G B A half; Z, N.X N.Y N.Z and steps float; stereo as multi-view; camera matrices and the run's hash as
+// attributes.
 #pragma once
 
 #include "volmark/picture.h"
@@ -17,7 +18,8 @@ struct ExrAttributes {
 };
 
 /// One picture, or two of equal size as OpenEXR multi-view ("left" is the default view, the other channels are
-/// "right.R" ...). Colours are rounded to half float. Z is left out if no picture has distances; otherwise all have.
+/// "right.R" ...; names with a dot carry the view before the last part: "N.left.X", "N.right.X"). Colours are rounded
+/// to half float. Of Z, N and steps those are there that the pictures have: all of them or none.
 ///
 /// Attributes: `volmark.format` (int) 1; `volmark.run` and `comments`, unless empty; with views, the matrices
 /// `worldToCamera` and `worldToNDC` of the first and `right.worldToCamera` and `right.worldToNDC` of the second.

@@ -16,15 +16,9 @@ namespace {
 
 constexpr int kLargestSide = 65536;
 
-/// What the header of a file of ours says. Throws std::runtime_error if it isn't one.
-struct Layout {
-  int width;
-  int height;
-  std::size_t views;
-  bool hasDistance;
-};
-
-Layout layoutOf(const Imf::Header& header) {
+/// The pictures that the header of a file of ours announces, with room for their layers. Throws std::runtime_error
+/// if it isn't one.
+std::vector<Picture> announced(const Imf::Header& header) {
   const auto* version = header.findTypedAttribute<Imf::IntAttribute>(exr::kFormatAttribute);
   if (!version) throw std::runtime_error(fmt::format("no attribute {}: not a picture of ours", exr::kFormatAttribute));
   if (version->value() != exr::kFormatVersion)
@@ -38,7 +32,6 @@ Layout layoutOf(const Imf::Header& header) {
 
   const std::size_t views = Imf::hasMultiView(header) ? Imf::multiView(header).size() : 1;
   if (views < 1 || views > 2) throw std::runtime_error(fmt::format("{} views, allowed: 1 or 2", views));
-  const bool hasDistance = header.channels().findChannel(exr::kDistanceName) != nullptr;
 
   // The library would fill absent channels with zeros.
   const auto require = [&](const std::string& name, Imf::PixelType type) {
@@ -48,36 +41,43 @@ Layout layoutOf(const Imf::Header& header) {
       throw std::runtime_error(
           fmt::format("channel {} must be {} and not subsampled", name, type == Imf::HALF ? "half" : "float"));
   };
-  for (std::size_t view = 0; view < views; ++view) {
+  for (std::size_t view = 0; view < views; ++view)
     for (const char* name : exr::kColorNames)
-      require(exr::channelName(view, name), Imf::HALF);
-    if (hasDistance) require(exr::channelName(view, exr::kDistanceName), Imf::FLOAT);
-  }
-  return {window.max.x + 1, window.max.y + 1, views, hasDistance};
+      require(exr::channelName(views, view, name), Imf::HALF);
+
+  Picture picture(window.max.x + 1, window.max.y + 1);
+  const auto has = [&](const char* name) {
+    return header.channels().findChannel(exr::channelName(views, 0, name)) != nullptr;
+  };
+  if (!has(exr::kDistanceName)) picture.distance.clear();
+  if (has(exr::kNormalNames[0])) picture.normal.resize(picture.color.size());
+  if (has(exr::kStepsName)) picture.steps.resize(picture.color.size());
+  for (std::size_t view = 0; view < views; ++view)
+    for (const exr::FloatChannel& channel : exr::floatChannels(picture))
+      require(exr::channelName(views, view, channel.name), Imf::FLOAT);
+  return std::vector<Picture>(views, picture);
 }
 
 std::vector<Picture> readFile(const std::filesystem::path& path) {
   Imf::InputFile file(path.c_str());
-  const Layout layout = layoutOf(file.header());
-  std::vector<Picture> pictures(layout.views, Picture(layout.width, layout.height));
+  std::vector<Picture> pictures = announced(file.header());
 
   // Halves are widened on the way in.
   Imf::FrameBuffer frame;
-  const auto width = static_cast<std::size_t>(layout.width);
-  for (std::size_t view = 0; view < layout.views; ++view) {
+  const auto width = static_cast<std::size_t>(pictures[0].width);
+  for (std::size_t view = 0; view < pictures.size(); ++view) {
     Picture& picture = pictures[view];
+    const auto insert = [&](const char* name, const float* first, std::size_t stride) {
+      frame.insert(exr::channelName(pictures.size(), view, name),
+                   Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(first)), stride, stride * width));
+    };
     for (int channel = 0; channel < 4; ++channel)
-      frame.insert(exr::channelName(view, exr::kColorNames[static_cast<std::size_t>(channel)]),
-                   Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(&picture.color[0][channel]), sizeof(glm::vec4),
-                              sizeof(glm::vec4) * width));
-    if (!layout.hasDistance) picture.distance.clear();
-    if (layout.hasDistance)
-      frame.insert(exr::channelName(view, exr::kDistanceName),
-                   Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(picture.distance.data()), sizeof(float),
-                              sizeof(float) * width));
+      insert(exr::kColorNames[static_cast<std::size_t>(channel)], &picture.color[0][channel], sizeof(glm::vec4));
+    for (const exr::FloatChannel& channel : exr::floatChannels(picture))
+      insert(channel.name, channel.first, channel.stride);
   }
   file.setFrameBuffer(frame);
-  file.readPixels(0, layout.height - 1);
+  file.readPixels(0, pictures[0].height - 1);
   return pictures;
 }
 

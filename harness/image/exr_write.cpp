@@ -53,20 +53,21 @@ Imf::Header headerOf(const std::vector<Picture>& pictures, const ExrAttributes& 
   header.compression() = Imf::ZIP_COMPRESSION;
   for (std::size_t view = 0; view < pictures.size(); ++view) {
     for (const char* name : exr::kColorNames)
-      header.channels().insert(exr::channelName(view, name), Imf::Channel(Imf::HALF));
-    if (!pictures[view].distance.empty())
-      header.channels().insert(exr::channelName(view, exr::kDistanceName), Imf::Channel(Imf::FLOAT));
+      header.channels().insert(exr::channelName(pictures.size(), view, name), Imf::Channel(Imf::HALF));
+    for (const exr::FloatChannel& channel : exr::floatChannels(pictures[view]))
+      header.channels().insert(exr::channelName(pictures.size(), view, channel.name), Imf::Channel(Imf::FLOAT));
   }
 
-  if (pictures.size() == 2) Imf::addMultiView(header, {"left", "right"});
+  if (pictures.size() == 2) Imf::addMultiView(header, exr::kViewNames);
   header.insert(exr::kFormatAttribute, Imf::IntAttribute(exr::kFormatVersion));
   if (!attributes.run.empty()) header.insert("volmark.run", Imf::StringAttribute(attributes.run));
   if (!attributes.comments.empty()) Imf::addComments(header, attributes.comments);
   for (std::size_t view = 0; view < attributes.views.size(); ++view) {
     const Imf::M44fAttribute toCamera(forRowVectors(worldToCamera(attributes.views[view].pose)));
     const Imf::M44fAttribute toNdc(forRowVectors(worldToNdc(attributes.views[view])));
-    header.insert(exr::channelName(view, "worldToCamera"), toCamera);
-    header.insert(exr::channelName(view, "worldToNDC"), toNdc);
+    const std::string prefix = view == 0 ? "" : "right.";
+    header.insert(prefix + "worldToCamera", toCamera);
+    header.insert(prefix + "worldToNDC", toNdc);
   }
   return header;
 }
@@ -91,14 +92,14 @@ void writeFile(const std::filesystem::path& path, const std::vector<Picture>& pi
   const auto width = static_cast<std::size_t>(pictures[0].width);
   for (std::size_t view = 0; view < pictures.size(); ++view) {
     for (std::size_t channel = 0; channel < 4; ++channel)
-      frame.insert(exr::channelName(view, exr::kColorNames[channel]),
+      frame.insert(exr::channelName(pictures.size(), view, exr::kColorNames[channel]),
                    Imf::Slice(Imf::HALF, reinterpret_cast<char*>(colors[view].data() + channel), 4 * sizeof(half),
                               4 * sizeof(half) * width));
     // The library's slices are not const, but writing only reads them.
-    auto* distance = const_cast<float*>(pictures[view].distance.data());
-    if (!pictures[view].distance.empty())
-      frame.insert(exr::channelName(view, exr::kDistanceName),
-                   Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(distance), sizeof(float), sizeof(float) * width));
+    for (const exr::FloatChannel& channel : exr::floatChannels(pictures[view]))
+      frame.insert(exr::channelName(pictures.size(), view, channel.name),
+                   Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(channel.first)), channel.stride,
+                              channel.stride * width));
   }
 
   Imf::OutputFile file(path.c_str(), headerOf(pictures, attributes));
@@ -115,6 +116,7 @@ void writeExr(const std::filesystem::path& path, const std::vector<Picture>& pic
   for ([[maybe_unused]] const Picture& picture : pictures) {
     assert(picture.width == pictures[0].width && picture.height == pictures[0].height && picture.width > 0);
     assert(picture.distance.size() == pictures[0].distance.size());
+    assert(picture.normal.size() == pictures[0].normal.size() && picture.steps.size() == pictures[0].steps.size());
   }
 
   // Workers may write the same picture at the same time: each has its own temporary name.

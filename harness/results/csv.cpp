@@ -151,17 +151,18 @@ std::string countersCsv(std::span<const CounterRow> counters, const TechniqueInf
 
 std::string picturesCsv(std::span<const PictureRow> pictures, const TechniqueInfo& info) {
   CsvText csv("pictures", {"frame", "phase", "view", "file", "reference", "reference_file", "mse", "psnr_db",
-                           "identical", "depth_mean_voxels", "depth_p995_voxels", "depth_max_voxels", "missed_share",
-                           "spurious_share", "cumulative_ms"});
+                           "identical", "ssim", "flip", "flip_hdr", "depth_mean_voxels", "depth_p995_voxels",
+                           "depth_max_voxels", "missed_share", "spurious_share", "cumulative_ms"});
   for (const PictureRow& picture : pictures) {
     csv.integer(std::int64_t{picture.frame}).number(picture.phase).integer(std::int64_t{picture.view});
     csv.text(picture.file).text(picture.reference).text(picture.referenceFile);
     if (picture.reference == "none") {
-      for (int column = 0; column < 8; ++column)
+      for (int column = 0; column < 11; ++column)
         csv.empty();
     } else {
       const PictureErrors& errors = picture.errors;
       csv.number(errors.mse).number(errors.psnrDb).boolean(errors.identical);
+      csv.number(errors.ssim).number(errors.flip).number(errors.flipHdr);
       csv.number(errors.depthMeanVoxels).number(errors.depthP995Voxels).number(errors.depthMaxVoxels);
       csv.number(errors.missedShare).number(errors.spuriousShare);
     }

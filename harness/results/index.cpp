@@ -43,6 +43,18 @@ std::optional<double> lowestPsnr(const nlohmann::json& run) {
   return lowest;
 }
 
+// The largest of a key over the pictures, or (sign -1) the smallest; nothing if none has it.
+std::optional<double> worst(const nlohmann::json& run, const std::string& key, double sign) {
+  std::optional<double> result;
+  const auto* pictures = find(run, "/pictures");
+  if (!pictures || !pictures->is_array()) return std::nullopt;
+  for (const auto& picture : *pictures) {
+    const auto value = numberAt(picture, "/" + key);
+    if (value && (!result || sign * *value > sign * *result)) result = value;
+  }
+  return result;
+}
+
 void addRow(CsvText& csv, const nlohmann::json& run, const std::vector<std::string>& axes) {
   csv.text(textAt(run, "/run")).text(textAt(run, "/point"));
   csv.integer(static_cast<std::int64_t>(numberAt(run, "/replicate").value_or(0)));
@@ -53,7 +65,8 @@ void addRow(CsvText& csv, const nlohmann::json& run, const std::vector<std::stri
   for (const char* name : {"mean_ms", "median_ms", "p99_ms", "low1_avg_ms", "fps"})
     csv.number(numberAt(run, fmt::format("/statistics/frame/{}", name)));
   csv.number(numberAt(run, "/statistics/host/median_ms")).number(numberAt(run, "/statistics/cpu/median_ms"));
-  csv.number(lowestPsnr(run)).number(generationMs(run)).number(numberAt(run, "/memory/total_bytes"));
+  csv.number(lowestPsnr(run)).number(worst(run, "ssim", -1)).number(worst(run, "flip", 1));
+  csv.number(worst(run, "flip_hdr", 1)).number(generationMs(run)).number(numberAt(run, "/memory/total_bytes"));
   csv.text(textAt(run, "/provenance/device/identity")).text(textAt(run, "/provenance/program/commit"));
   csv.text(textAt(run, "/provenance/started"));
   csv.endRow();
@@ -121,8 +134,9 @@ std::string indexCsv(const std::vector<nlohmann::json>& runs, const std::vector<
   std::vector<std::string> columns{"run", "point", "replicate", "status", "reason"};
   for (const std::string& axis : allAxes)
     columns.push_back("label." + axis);
-  for (const char* name : {"mean_ms", "median_ms", "p99_ms", "low1_avg_ms", "fps", "host_median_ms", "cpu_median_ms",
-                           "psnr_db", "generation_ms", "memory_bytes", "device", "commit", "started"})
+  for (const char* name :
+       {"mean_ms", "median_ms", "p99_ms", "low1_avg_ms", "fps", "host_median_ms", "cpu_median_ms", "psnr_db", "ssim",
+        "flip", "flip_hdr", "generation_ms", "memory_bytes", "device", "commit", "started"})
     columns.emplace_back(name);
 
   CsvText csv("index", columns);

@@ -56,15 +56,17 @@ void Replay::run(const std::vector<std::size_t>& wanted, bool counting, const st
   }
 }
 
-std::vector<CounterRow> Replay::count() {
+std::vector<CounterRow> Replay::count(std::map<std::size_t, std::vector<Picture>>& captured) {
   std::vector<CounterRow> rows;
-  if (m_session.info().counters.empty()) return rows;
+  if (m_session.info().counters.empty() && m_session.info().layers.empty()) return rows;
   std::vector<std::size_t> wanted;
   for (std::size_t i = m_trace.lastOrbitBegin; i < m_trace.phases.size(); ++i)
     wanted.push_back(i);
   run(wanted, true, [&](std::size_t i) {
     const int frame = static_cast<int>(i - m_trace.lastOrbitBegin);
-    rows.push_back({frame, m_trace.phases[i], m_session.technique().counters()});
+    if (!m_session.info().counters.empty())
+      rows.push_back({frame, m_trace.phases[i], m_session.technique().counters()});
+    if (const auto found = captured.find(i); found != captured.end()) m_session.addLayers(found->second);
   });
   return rows;
 }

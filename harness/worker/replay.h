@@ -22,8 +22,8 @@ public:
   /// ascending). Techniques without history draw only the wanted frames; the others everything before them.
   void run(const std::vector<std::size_t>& wanted, bool counting, const std::function<void(std::size_t)>& seen);
 
-  /// Counters of every frame of the last timed orbit.
-  std::vector<CounterRow> count();
+  /// Counters of every frame of the last timed orbit. Adds the technique's layers to those of the `captured` frames.
+  std::vector<CounterRow> count(std::map<std::size_t, std::vector<Picture>>& captured);
 
   /// Frames of the trace to capture: `count` of the last timed orbit, evenly spread, and its last frame.
   std::vector<std::size_t> capturedFrames(int count) const;

@@ -20,6 +20,14 @@ void refuseUnsupported(const PointSettings& settings, const TechniqueFactory& fa
   if (const auto why = factory.whyUnsupported(scene, settings.parameters, size, device)) throw UnsupportedError(*why);
 }
 
+Picture withLayers(Picture picture, const TechniqueInfo& info) {
+  for (const PictureLayer layer : info.layers) {
+    if (layer == PictureLayer::normal) picture.normal.resize(picture.color.size());
+    if (layer == PictureLayer::steps) picture.steps.resize(picture.color.size());
+  }
+  return picture;
+}
+
 } // namespace
 
 Session::Session(const PointSettings& settings, const CatalogueEntry& technique, std::shared_ptr<const Volume> volume,
@@ -30,12 +38,12 @@ Session::Session(const PointSettings& settings, const CatalogueEntry& technique,
   if (info().needsGpu) m_device = std::make_unique<gpu::Device>(gpu::DeviceOptions{options.device, options.validate});
   refuseUnsupported(m_settings, *m_entry.factory, m_scene, size, m_device.get());
   if (m_device) {
-    m_target = std::make_unique<gpu::Target>(*m_device, size.width, size.height, size.views);
+    m_target = std::make_unique<gpu::Target>(*m_device, size.width, size.height, size.views, info().layers);
     m_outputBytes = m_device->ledger().totalBytes();
     for (int i = 0; i < settings.measure.framesInFlight; ++i)
       m_slots.push_back(makeGpuSlot(*m_device));
   } else {
-    m_pictures.assign(static_cast<std::size_t>(size.views), Picture(size.width, size.height));
+    m_pictures.assign(static_cast<std::size_t>(size.views), withLayers(Picture(size.width, size.height), info()));
     m_slots.push_back(makeHostSlot());
   }
   m_technique = m_entry.factory->create();
@@ -99,11 +107,26 @@ CompletedFrame Session::complete() {
 
 std::vector<Picture> Session::pictures() const {
   assert(m_unfinished.empty());
-  if (!m_target) return m_pictures;
-  std::vector<Picture> result;
-  for (int view = 0; view < m_target->views; ++view)
+  std::vector<Picture> result = m_pictures;
+  for (Picture& picture : result) {
+    picture.normal.clear();
+    picture.steps.clear();
+  }
+  for (int view = 0; m_target && view < m_target->views; ++view)
     result.push_back(gpu::readBack(*m_device, *m_target, view));
   return result;
+}
+
+void Session::addLayers(std::vector<Picture>& pictures) const {
+  assert(m_unfinished.empty());
+  for (std::size_t view = 0; view < pictures.size(); ++view) {
+    if (m_target) {
+      gpu::readBackLayers(*m_device, *m_target, static_cast<int>(view), pictures[view]);
+    } else {
+      pictures[view].normal = m_pictures[view].normal;
+      pictures[view].steps = m_pictures[view].steps;
+    }
+  }
 }
 
 } // namespace volmark

@@ -56,8 +56,10 @@ public:
   std::size_t unfinished() const { return m_unfinished.size(); }
   std::size_t framesInFlight() const { return m_slots.size(); }
 
-  /// The output of the last finished frame, one picture per view.
+  /// Colours and distances of the last finished frame, one picture per view.
   std::vector<Picture> pictures() const;
+  /// Adds the layers that the technique declares to pictures of the same frame. The last finished one was counting.
+  void addLayers(std::vector<Picture>& pictures) const;
 
   const TechniqueInfo& info() const { return m_entry.factory->info; }
   Technique& technique() { return *m_technique; }

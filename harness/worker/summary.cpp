@@ -51,6 +51,7 @@ std::string summaryOf(const Experiment& experiment, const RunIdentity& identity)
   std::string text = fmt::format("{}{:.1f} ms ({:.1f} fps), 1 % low {:.1f} ms", head, frame["mean_ms"].get<double>(),
                                  frame["fps"].get<double>(), frame["low1_avg_ms"].get<double>());
   if (const auto psnr = worst(run["pictures"], "psnr_db", -1)) text += fmt::format(", PSNR {:.1f} dB", *psnr);
+  if (const auto flip = worst(run["pictures"], "flip", 1)) text += fmt::format(", FLIP {:.4f}", *flip);
   if (const auto depth = worst(run["pictures"], "depth_p995_voxels", 1))
     text += fmt::format(", depth {:.3f} voxel", *depth);
   return text + failedChecks(run);

@@ -128,10 +128,10 @@ private:
     checkMemory();
 
     Replay replay(*m_session, m_trace, [this] { tick(); });
-    m_record.counters = replay.count();
     std::vector<std::size_t> wanted = replay.capturedFrames(m_point.settings.pictures.count);
     auto captured = replay.draw(wanted);
     checkReplays(replay, captured.at(wanted.back()));
+    m_record.counters = replay.count(captured);
 
     const Judgement judgement{*m_session, m_trace, m_start.stagingFolder, m_start.experimentFolder, m_start.runHash};
     m_record.pictures = judgePictures(judgement, captured, m_record.frames);

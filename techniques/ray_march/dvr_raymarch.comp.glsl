@@ -10,9 +10,9 @@ layout(constant_id = kIdEarlyTermination) const bool kEarlyTermination = true;
 
 // Colour and opacity of one step (transfer_table.h). The macro PREINTEGRATED changes the table's type.
 #ifdef PREINTEGRATED
-layout(set = 0, binding = kBindingTable) uniform sampler2D table;
+layout(set = 0, binding = kBindingOwn) uniform sampler2D table;
 #else
-layout(set = 0, binding = kBindingTable) uniform sampler1D table;
+layout(set = 0, binding = kBindingOwn) uniform sampler1D table;
 #endif
 
 // Samples (or slabs) between two checks of the loop. Drivers that call functions to sample textures keep what is
@@ -165,6 +165,6 @@ void main() {
   if (entered) {
     accumulate(grid, path, sum);
   }
-  if (inPicture) writePixel(pixel, view, vec4(sum.color, 1.0 - sum.transmittance), infinity());
+  if (inPicture) writePixel(pixel, view, vec4(sum.color, 1.0 - sum.transmittance), infinity(), sum.samples);
   countRay(sum.samples, entered, entered && !goesOn(sum.transmittance), sum.gradients);
 }

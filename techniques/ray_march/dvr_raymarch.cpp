@@ -45,7 +45,8 @@ void DvrRaymarch::prepare(const Preparation& preparation, Recorder& recorder) {
   m_tableSize = static_cast<int>(parameters.integer(m_preintegrated ? "preintegrated_size" : "table_size"));
   m_constants.endTransmittance = static_cast<float>(1 - parameters.number("termination_opacity"));
 
-  MarcherDescription description{.shader = {.path = "ray_march/dvr_raymarch.comp.glsl"}, .hasTable = true};
+  MarcherDescription description{.shader = {.path = "ray_march/dvr_raymarch.comp.glsl"},
+                                 .own = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
   if (m_preintegrated) description.shader.macros.emplace_back("PREINTEGRATED", "1");
   description.variant.set(kIdEarlyTermination, parameters.boolean("early_termination"));
   m_marcher.emplace(preparation, description, recorder);
@@ -78,7 +79,7 @@ void DvrRaymarch::update(const Changes& changes, const FrameInputs& inputs, Reco
 
 void DvrRaymarch::draw(const Frame& frame, Recorder& recorder) {
   const gpu::Resource table = gpu::SampledImage{m_table.layerView(0), m_tableSampler.handle()};
-  m_marcher->march(frame, m_seed, m_constants, {&table, 1}, recorder);
+  m_marcher->march(frame, m_seed, m_constants, table, recorder);
 }
 
 std::vector<CounterValue> DvrRaymarch::counters() const {
@@ -117,7 +118,8 @@ TechniqueInfo describe() {
                      {"march", "All rays of all views."}},
           .generation = {{"upload", "The volume's voxels to the GPU."},
                          {"pipelines", "The timed and the counting pipeline."}},
-          .counters = counterDescriptors("terminated_rays", "Rays that end before the exit because they are opaque.")};
+          .counters = counterDescriptors("terminated_rays", "Rays that end before the exit because they are opaque."),
+          .layers = {PictureLayer::steps}};
 }
 
 std::optional<std::string> whyDvrUnsupported(const Scene& scene, const ParameterValues& parameters,

@@ -5,6 +5,8 @@
 
 #include <ray_march/march.glsl>
 
+layout(set = 0, binding = kBindingOwn, rgba32f) uniform writeonly image2DArray normalImage;
+
 // Where the surface is met first, in steps from the entry; -1 if nowhere. `samples` counts.
 float findSurface(VolumeGrid grid, Path path, inout uint samples) {
   // Clamped scalars are never below 0 and never above 1.
@@ -59,6 +61,7 @@ void main() {
   Path path;
   bool entered = inPicture && makePath(grid, pixel, view, path);
   bool shadedByGradient = false;
+  vec3 surfaceNormal = vec3(0); // of counting frames
   if (entered) {
     float place = findSurface(grid, path, samples);
     hit = place >= 0.0;
@@ -69,9 +72,11 @@ void main() {
       if (!atEntry && kShadingModel != kShadingNone) normal = normalAt(grid, path, place);
       shadedByGradient = !atEntry && kShadingModel != kShadingNone;
       color = vec4(shadeOnPath(path, frame.surfaceColor, normal), 1.0);
+      if (kCounting) surfaceNormal = atEntry || shadedByGradient ? normal : normalAt(grid, path, place);
       distance = (path.entry + place * march.stepLength) * path.ray.cosine;
     }
   }
-  if (inPicture) writePixel(pixel, view, color, distance);
+  if (inPicture) writePixel(pixel, view, color, distance, samples);
+  if (kCounting && inPicture) imageStore(normalImage, texelIn(pixel, view), vec4(surfaceNormal, 0));
   countRay(samples, entered, hit, shadedByGradient ? 1u : 0u);
 }

@@ -1,6 +1,7 @@
 #include "iso_raymarch.h"
 
 #include "marcher.h"
+#include "volmark/gpu/target.h"
 
 #include <optional>
 
@@ -13,7 +14,9 @@ public:
   void prepare(const Preparation& preparation, Recorder& recorder) override {
     const std::vector<gpu::MemoryItem> before = preparation.device->ledger().items();
     m_bisections = static_cast<std::uint32_t>(preparation.parameters.integer("bisections"));
-    m_marcher.emplace(preparation, MarcherDescription{.shader = {.path = "ray_march/iso_raymarch.comp.glsl"}},
+    m_marcher.emplace(preparation,
+                      MarcherDescription{.shader = {.path = "ray_march/iso_raymarch.comp.glsl"},
+                                         .own = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
                       recorder);
     m_memory = memoryAdded(before, preparation.device->ledger().items());
   }
@@ -23,7 +26,8 @@ public:
   void update(const Changes&, const FrameInputs&, Recorder&) override {}
 
   void draw(const Frame& frame, Recorder& recorder) override {
-    m_marcher->march(frame, m_seed, MarchConstants{.bisections = m_bisections}, {}, recorder);
+    m_marcher->march(frame, m_seed, MarchConstants{.bisections = m_bisections},
+                     gpu::StorageImage{frame.target->normal.view()}, recorder);
   }
 
   std::vector<CounterValue> counters() const override {
@@ -58,7 +62,8 @@ TechniqueInfo describe() {
           .passes = {{"march", "All rays of all views, shaded."}},
           .generation = {{"upload", "The volume's voxels to the GPU."},
                          {"pipelines", "The timed and the counting pipeline."}},
-          .counters = counterDescriptors("hits", "Rays that meet the isosurface.")};
+          .counters = counterDescriptors("hits", "Rays that meet the isosurface."),
+          .layers = {PictureLayer::normal, PictureLayer::steps}};
 }
 
 } // namespace

@@ -23,6 +23,7 @@ layout(set = 0, binding = kBindingVolume) uniform sampler3D volume;
 layout(set = 0, binding = kBindingColor, rgba16f) uniform writeonly image2DArray colorImage;
 layout(set = 0, binding = kBindingDistance, r32f) uniform writeonly image2DArray distanceImage;
 VOLMARK_COUNTERS(kBindingCounters)
+layout(set = 0, binding = kBindingSteps, r32f) uniform writeonly image2DArray stepsImage;
 layout(push_constant, scalar) uniform MarchBlock {
   MarchConstants march;
 };
@@ -96,11 +97,16 @@ float infinity() {
   return uintBitsToFloat(0x7f800000u);
 }
 
-// `distance` along the view direction, +infinity if there is no surface.
-void writePixel(ivec2 pixel, uint view, vec4 color, float distance) {
-  int layer = int(bitfieldExtract(march.layers, int(8u * view), 8));
-  imageStore(colorImage, ivec3(pixel, layer), color);
-  imageStore(distanceImage, ivec3(pixel, layer), vec4(distance));
+// Where a pixel of a view lies in the output images.
+ivec3 texelIn(ivec2 pixel, uint view) {
+  return ivec3(pixel, int(bitfieldExtract(march.layers, int(8u * view), 8)));
+}
+
+// `distance` along the view direction, +infinity if there is no surface. `samples` are for counting frames.
+void writePixel(ivec2 pixel, uint view, vec4 color, float distance, uint samples) {
+  imageStore(colorImage, texelIn(pixel, view), color);
+  imageStore(distanceImage, texelIn(pixel, view), vec4(distance));
+  if (kCounting) imageStore(stepsImage, texelIn(pixel, view), vec4(samples));
 }
 
 // Adds the work of one ray; every invocation calls it, with zeros if its ray misses.

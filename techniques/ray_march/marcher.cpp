@@ -14,14 +14,11 @@ gpu::Filtering filteringOf(const ParameterValues& parameters) {
   return parameters.text("filtering") == "shader" ? gpu::Filtering::shader : gpu::Filtering::hardware;
 }
 
-gpu::PipelineLayoutDescription layoutOf(bool hasTable) {
-  gpu::PipelineLayoutDescription layout{.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
-                                                     VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                                     VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                                     VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                        .pushConstantBytes = sizeof(MarchConstants)};
-  if (hasTable) layout.bindings.push_back(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
-  return layout;
+gpu::PipelineLayoutDescription layoutOf(VkDescriptorType own) {
+  return {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, own},
+          .pushConstantBytes = sizeof(MarchConstants)};
 }
 
 std::uint32_t layersOf(const std::vector<View>& views) {
@@ -52,12 +49,12 @@ gpu::Pipeline Marcher::makePipeline(gpu::Device& device, MarcherDescription desc
       .set(kIdCounting, counting);
   return {device, gpu::ComputePipelineDescription{.name = description.shader.path + (counting ? " counting" : ""),
                                                   .shader = description.shader,
-                                                  .layout = layoutOf(description.hasTable),
+                                                  .layout = layoutOf(description.own),
                                                   .specialisation = description.variant}};
 }
 
-void Marcher::march(const Frame& frame, std::uint64_t seed, MarchConstants constants,
-                    std::span<const gpu::Resource> table, Recorder& recorder) const {
+void Marcher::march(const Frame& frame, std::uint64_t seed, MarchConstants constants, const gpu::Resource& own,
+                    Recorder& recorder) const {
   assert(frame.target && static_cast<int>(frame.inputs.views.size()) <= gpu::kMaxViews);
   constants.stepLength = m_stepLength;
   constants.layers = layersOf(frame.inputs.views);
@@ -65,11 +62,13 @@ void Marcher::march(const Frame& frame, std::uint64_t seed, MarchConstants const
   const Pass pass = recorder.pass("march");
   gpu::Commands& commands = recorder.gpu();
   if (frame.counting) m_counters.clear(commands);
-  std::vector<gpu::Resource> resources = {commands.constants(gpu::frameConstants(frame, *m_scene, m_volume, seed)),
-                                          m_volume.at(frame.inputs.timeStep),
-                                          gpu::StorageImage{frame.target->color.view()},
-                                          gpu::StorageImage{frame.target->distance.view()}, m_counters.range()};
-  resources.insert(resources.end(), table.begin(), table.end());
+  const gpu::Resource resources[] = {commands.constants(gpu::frameConstants(frame, *m_scene, m_volume, seed)),
+                                     m_volume.at(frame.inputs.timeStep),
+                                     gpu::StorageImage{frame.target->color.view()},
+                                     gpu::StorageImage{frame.target->distance.view()},
+                                     m_counters.range(),
+                                     gpu::StorageImage{frame.target->steps.view()},
+                                     own};
   const glm::uvec3 groups((frame.target->width + kGroupSize - 1) / kGroupSize,
                           (frame.target->height + kGroupSize - 1) / kGroupSize, frame.inputs.views.size());
   commands.dispatch(frame.counting ? m_counting : m_timed, resources, gpu::bytesOf(constants), groups);

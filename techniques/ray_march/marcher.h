@@ -8,7 +8,6 @@
 #include "volmark/shared/frame_constants.h"
 #include "volmark/technique.h"
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,7 +17,7 @@ namespace volmark::ray_march {
 struct MarcherDescription {
   gpu::ShaderSource shader;
   gpu::Specialisation variant; ///< the technique's own constants
-  bool hasTable = false;       ///< binding kBindingTable is there
+  VkDescriptorType own;        ///< of binding kBindingOwn
 };
 
 class Marcher {
@@ -26,9 +25,8 @@ public:
   /// Generation passes "upload" and "pipelines". Reads the parameters filtering and jitter.
   Marcher(const Preparation& preparation, const MarcherDescription& description, Recorder& recorder);
 
-  /// Records the pass "march". `table` is bound to kBindingTable if the description has one. Sets
-  /// stepLength and layers of `constants`.
-  void march(const Frame& frame, std::uint64_t seed, MarchConstants constants, std::span<const gpu::Resource> table,
+  /// Records the pass "march". `own` is bound to kBindingOwn. Sets stepLength and layers of `constants`.
+  void march(const Frame& frame, std::uint64_t seed, MarchConstants constants, const gpu::Resource& own,
              Recorder& recorder) const;
 
   /// Values of kCounter... after a counting frame.

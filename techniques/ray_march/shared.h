@@ -14,7 +14,8 @@ const int kBindingVolume = 1;
 const int kBindingColor = 2;
 const int kBindingDistance = 3;
 const int kBindingCounters = 4;
-const int kBindingTable = 5; // volumes only
+const int kBindingSteps = 5;
+const int kBindingOwn = 6; // surfaces: the image of normals; volumes: the table
 
 // Specialisation constants.
 const int kIdShaderFiltering = 0;

@@ -63,6 +63,7 @@ struct TechniqueInfo {
   std::vector<PassDescriptor> passes;     ///< of update and draw
   std::vector<PassDescriptor> generation; ///< of prepare
   std::vector<CounterDescriptor> counters;
+  std::vector<PictureLayer> layers; ///< written in counting frames, beside colour and distance
 };
 
 /// Size of the output.
@@ -84,7 +85,7 @@ struct Preparation {
 struct Frame {
   std::uint64_t index = 0; ///< since reset()
   const FrameInputs& inputs;
-  bool counting = false; ///< a counting frame: fill counters(); never timed
+  bool counting = false; ///< a counting frame: fill counters() and TechniqueInfo::layers; never timed
   gpu::Target* target = nullptr;
   std::vector<Picture>* pictures = nullptr; ///< one per view, already of the right size; write every pixel
 };

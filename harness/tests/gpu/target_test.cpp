@@ -33,6 +33,16 @@ constexpr const char* kStore =
     "  imageStore(distanceImage, p, vec4(d));\n"
     "}\n";
 
+constexpr const char* kStoreLayers = "#version 460\nlayout(local_size_x = 8, local_size_y = 8) in;\n"
+                                     "layout(binding = 0, rgba32f) uniform writeonly image2DArray normal;\n"
+                                     "layout(binding = 1, r32f) uniform writeonly image2DArray steps;\n"
+                                     "void main() {\n"
+                                     "  ivec3 p = ivec3(gl_GlobalInvocationID);\n"
+                                     "  if (any(greaterThanEqual(p.xy, imageSize(normal).xy))) return;\n"
+                                     "  imageStore(normal, p, vec4(p.x, -p.y, p.z, 7));\n"
+                                     "  imageStore(steps, p, vec4(p.x + 100 * p.y + 10000 * p.z));\n"
+                                     "}\n";
+
 } // namespace
 
 TEST_F(TargetTest, ViewsComeBackPixelByPixel) {
@@ -59,6 +69,46 @@ TEST_F(TargetTest, ViewsComeBackPixelByPixel) {
         ASSERT_FLOAT_EQ(picture.distance[picture.index(x, y)], expected.distance) << x << ' ' << y << ' ' << view;
       }
   }
+}
+
+TEST_F(TargetTest, DeclaredLayersComeBack) {
+  const Target target(device(), 19, 11, 2, {PictureLayer::normal, PictureLayer::steps});
+  const Pipeline pipeline(
+      device(), ComputePipelineDescription{"layers",
+                                           {addShader("layers.comp.glsl", kStoreLayers)},
+                                           {{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}}});
+  Commands commands(device());
+  commands.begin();
+  target.initialise(commands);
+  const Resource resources[] = {StorageImage{target.normal.view()}, StorageImage{target.steps.view()}};
+  commands.dispatch(pipeline, resources, {}, {3, 2, 2});
+  commands.submit();
+  commands.wait();
+  for (int view = 0; view < 2; ++view) {
+    Picture picture(19, 11);
+    readBackLayers(device(), target, view, picture);
+    for (int y = 0; y < 11; ++y)
+      for (int x = 0; x < 19; ++x) {
+        const std::size_t pixel = picture.index(x, y);
+        ASSERT_EQ(picture.normal.at(pixel), glm::vec3(x, -y, view));
+        ASSERT_EQ(picture.steps.at(pixel), static_cast<float>(x + 100 * y + 10000 * view));
+      }
+  }
+}
+
+TEST_F(TargetTest, UndeclaredLayersAreAbsent) {
+  const Target target(device(), 8, 8, 1, {PictureLayer::steps});
+  EXPECT_FALSE(target.normal);
+  Commands commands(device());
+  commands.begin();
+  target.initialise(commands);
+  commands.submit();
+  commands.wait();
+  Picture picture = readBack(device(), target, 0);
+  EXPECT_TRUE(picture.normal.empty() && picture.steps.empty());
+  readBackLayers(device(), target, 0, picture);
+  EXPECT_TRUE(picture.normal.empty());
+  EXPECT_EQ(picture.steps.size(), 64u);
 }
 
 TEST_F(TargetTest, LayersCanBeDrawnTo) {

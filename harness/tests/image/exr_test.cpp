@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfMultiView.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -60,11 +61,24 @@ Picture randomPicture(unsigned seed, int width = 33, int height = 17) {
   return picture;
 }
 
+/// The same with normals and steps.
+Picture withLayers(Picture picture, unsigned seed) {
+  std::mt19937 random(seed);
+  for (std::size_t i = 0; i < picture.color.size(); ++i) {
+    const auto next = [&] { return static_cast<float>(random()) * 1e-9f - 2; };
+    picture.normal.emplace_back(next(), next(), next());
+    picture.steps.push_back(static_cast<float>(random() % 1000));
+  }
+  return picture;
+}
+
 void expectSame(const Picture& a, const Picture& b) {
   ASSERT_EQ(a.width, b.width);
   ASSERT_EQ(a.height, b.height);
   EXPECT_EQ(std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(glm::vec4)), 0);
   EXPECT_EQ(a.distance, b.distance);
+  EXPECT_EQ(a.normal, b.normal);
+  EXPECT_EQ(a.steps, b.steps);
 }
 
 std::string messageOf(const std::function<void()>& action) {
@@ -114,6 +128,46 @@ TEST_F(Exr, StereoIsMultiView) {
   EXPECT_EQ(Imf::multiView(input.header()), (Imf::StringVector{"left", "right"}));
   for (const char* name : {"R", "G", "B", "A", "Z", "right.R", "right.G", "right.B", "right.A", "right.Z"})
     EXPECT_TRUE(input.header().channels().findChannel(name)) << name;
+}
+
+TEST_F(Exr, LayersAreKeptBitForBit) {
+  const Picture both = withLayers(randomPicture(1), 2);
+  Picture stepsOnly = both;
+  stepsOnly.normal.clear();
+  Picture normalOnly = both;
+  normalOnly.steps.clear();
+  normalOnly.distance.clear();
+  for (const Picture& picture : {both, stepsOnly, normalOnly}) {
+    writeExr(file(), {picture}, {});
+    expectSame(readExr(file())[0], picture);
+    const Imf::InputFile input(file().c_str());
+    for (const char* name : {"N.X", "N.Y", "N.Z"})
+      EXPECT_EQ(input.header().channels().findChannel(name) != nullptr, !picture.normal.empty()) << name;
+    EXPECT_EQ(input.header().channels().findChannel("steps") != nullptr, !picture.steps.empty());
+  }
+}
+
+// OpenEXR puts the view before the last part of a name; a name with a dot belongs to no view without it.
+TEST_F(Exr, LayersOfBothEyesBelongToTheirViews) {
+  const std::vector<Picture> pictures = {withLayers(randomPicture(1), 3), withLayers(randomPicture(2), 4)};
+  writeExr(file(), pictures, {});
+  const std::vector<Picture> read = readExr(file());
+  expectSame(read.at(0), pictures[0]);
+  expectSame(read.at(1), pictures[1]);
+
+  const Imf::InputFile input(file().c_str());
+  const Imf::StringVector views = Imf::multiView(input.header());
+  const auto namesIn = [&](const std::string& view) {
+    std::vector<std::string> names;
+    const Imf::ChannelList list = Imf::channelsInView(view, input.header().channels(), views);
+    for (auto channel = list.begin(); channel != list.end(); ++channel)
+      names.emplace_back(channel.name());
+    return names;
+  };
+  EXPECT_THAT(namesIn("left"),
+              testing::UnorderedElementsAre("R", "G", "B", "A", "Z", "N.left.X", "N.left.Y", "N.left.Z", "steps"));
+  EXPECT_THAT(namesIn("right"), testing::UnorderedElementsAre("right.R", "right.G", "right.B", "right.A", "right.Z",
+                                                              "N.right.X", "N.right.Y", "N.right.Z", "right.steps"));
 }
 
 TEST_F(Exr, ColoursAreRoundedToTheNearestHalf) {
@@ -240,7 +294,8 @@ TEST_F(Exr, OtherFilesAreRefused) {
 TEST_F(Exr, ExrheaderReadsIt) {
   if (std::system("command -v exrheader > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "exrheader (package openexr) is absent";
-  writeExr(file(), {randomPicture(1), randomPicture(2)}, {"abcdef", "frame 7", {someView(0), someView(1)}});
+  writeExr(file(), {withLayers(randomPicture(1), 3), withLayers(randomPicture(2), 4)},
+           {"abcdef", "frame 7", {someView(0), someView(1)}});
   const std::string command = fmt::format("exrheader '{}'", file().string());
   std::string text;
   FILE* pipe = popen(command.c_str(), "r");
@@ -250,6 +305,7 @@ TEST_F(Exr, ExrheaderReadsIt) {
   EXPECT_EQ(pclose(pipe), 0);
   for (const char* expected :
        {"R, 16-bit floating-point", "right.A, 16-bit floating-point", "right.Z, 32-bit floating-point",
+        "N.left.X, 32-bit floating-point", "N.right.Z, 32-bit floating-point", "right.steps, 32-bit floating-point",
         "zip, multi-scanline blocks", "abcdef", "frame 7", "worldToCamera", "worldToNDC", "multiView"})
     EXPECT_THAT(text, HasSubstr(expected));
 }

@@ -64,6 +64,8 @@ TEST(CompareColor, IdenticalPicturesHaveNoPsnr) {
   EXPECT_EQ(errors.mse, 0);
   EXPECT_FALSE(errors.psnrDb);
   EXPECT_TRUE(errors.identical);
+  EXPECT_EQ(errors.flip, 0);
+  EXPECT_EQ(errors.flipHdr, 0);
   // Colours that show the same need not be the same.
   const PictureErrors same = compareColor(uniform({2, 2, 2, 1}), uniform({3, 3, 3, 1}), kBlack);
   EXPECT_EQ(same.mse, 0);
@@ -96,7 +98,57 @@ TEST(CompareColor, OnePixelCountsByItsShare) {
 
 TEST(CompareColor, NotANumberIsAsWrongAsCanBe) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_DOUBLE_EQ(compareColor(uniform({nan, nan, nan, 1}), uniform({0.5f, 0.5f, 0.5f, 1}), kBlack).mse, 1);
+  const Picture broken = uniform({nan, nan, nan, 1}, 20, 20);
+  const Picture grey = uniform({0.5f, 0.5f, 0.5f, 1}, 20, 20);
+  for (const PictureErrors& errors : {compareColor(broken, grey, kBlack), compareColor(grey, broken, kBlack)}) {
+    EXPECT_DOUBLE_EQ(errors.mse, 1);
+    EXPECT_EQ(errors.ssim, 0);
+    EXPECT_EQ(errors.flip, 1);
+  }
+  const PictureErrors alike = compareColor(broken, broken, kBlack);
+  EXPECT_EQ(alike.mse, 0);
+  EXPECT_EQ(alike.ssim, 1);
+  EXPECT_EQ(alike.flip, 0);
+}
+
+// One pixel without a number is wrong itself and shows in the windows around it, no farther.
+TEST(CompareColor, NotANumberStaysWhereItIs) {
+  const Picture grey = uniform({0.2f, 0.2f, 0.2f, 1}, 40, 40);
+  Picture broken = grey;
+  broken.color[broken.index(20, 20)].g = std::numeric_limits<float>::quiet_NaN();
+  const PictureErrors errors = compareColor(broken, grey, kBlack);
+  EXPECT_NEAR(errors.mse, 1.0 / (3 * 40 * 40), 1e-12);
+  EXPECT_LT(errors.ssim.value(), 1);
+  EXPECT_GT(errors.ssim.value(), 1 - 121.0 / (3 * 30 * 30));
+  EXPECT_GE(errors.flip, 1.0 / (40 * 40));
+  EXPECT_LT(errors.flip, 21.0 * 21 / (40 * 40));
+}
+
+TEST(CompareColor, SsimIsOfShownColoursAndNeedsAWindow) {
+  // sRGB-encoded, (2ab + C1) / (a^2 + b^2 + C1) in one channel of three; the others are alike.
+  const double a = shownGrey(0.1f);
+  const double b = shownGrey(0.6f);
+  const PictureErrors errors =
+      compareColor(uniform({0.1f, 0.3f, 0, 1}, 16, 16), uniform({0.6f, 0.3f, 0, 1}, 16, 16), kBlack);
+  EXPECT_NEAR(errors.ssim.value(), (2 + (2 * a * b + 1e-4) / (a * a + b * b + 1e-4)) / 3, 1e-9);
+  EXPECT_FALSE(compareColor(uniform({0, 0, 0, 1}, 10, 16), uniform({1, 1, 1, 1}, 10, 16), kBlack).ssim);
+}
+
+TEST(CompareColor, FlipIsOfClampedColoursOverTheBackground) {
+  const Picture white = uniform({7, 9, 3, 1}, 20, 20);
+  EXPECT_NEAR(compareColor(uniform({-1, 0, 0, 1}, 20, 20), white, kBlack).flip, 0.96737976, 1e-7);
+  // Nothing over white is white.
+  EXPECT_NEAR(compareColor(uniform({0, 0, 0, 0}, 20, 20), white, glm::dvec3(1)).flip, 0, 1e-12);
+}
+
+TEST(CompareColor, HdrFlipIsThereWhereColoursExceedOne) {
+  const Picture dim = uniform({1, 0.5f, -1, 1}, 20, 20);
+  const Picture bright = uniform({1.5f, 0.5f, -1, 1}, 20, 20);
+  EXPECT_FALSE(compareColor(dim, uniform({0.5f, 0.5f, 0, 1}, 20, 20), kBlack).flipHdr);
+  EXPECT_GT(compareColor(dim, bright, kBlack).flipHdr.value(), 0.01);
+  EXPECT_GT(compareColor(bright, dim, kBlack).flipHdr.value(), 0.01);
+  // Clamped there is no difference.
+  EXPECT_EQ(compareColor(dim, bright, kBlack).flip, 0);
 }
 
 TEST(CompareDistance, CountsMissedAndSpurious) {

@@ -34,7 +34,7 @@ TEST_F(Commit, writesEverything) {
   RunRecord record = makeRecord();
   const fs::path stage = experiment.stage(identity);
   std::ofstream(stage / "log.txt") << "log";
-  addPicture(record, stage, {.mse = 1e-5, .psnrDb = 50.0, .depthMeanVoxels = 0.25});
+  addPicture(record, stage, {.mse = 1e-5, .psnrDb = 50.0, .ssim = 0.99, .flip = 0.02, .depthMeanVoxels = 0.25});
   addPicture(record, stage, {.identical = true});
   record.pictures.push_back(record.pictures.back());
   record.pictures.back().reference = "none";
@@ -57,11 +57,15 @@ TEST_F(Commit, writesEverything) {
   EXPECT_EQ(run["generation"][1]["gpu_ms"], 0.75);
   EXPECT_EQ(run["memory"]["total_bytes"], (1 << 20) + 4096);
   EXPECT_EQ(run["pictures"][0]["psnr_db"], 50);
+  EXPECT_EQ(run["pictures"][0]["ssim"], 0.99);
+  EXPECT_EQ(run["pictures"][0]["flip"], 0.02);
+  EXPECT_EQ(run["pictures"][0]["flip_hdr"], nullptr);
   EXPECT_EQ(run["pictures"][0]["depth_max_voxels"], nullptr);
   EXPECT_EQ(run["pictures"][0]["cumulative_ms"], 20.125);
   EXPECT_EQ(run["pictures"][1]["psnr_db"], nullptr);
   EXPECT_EQ(run["pictures"][1]["identical"], true);
   EXPECT_EQ(run["pictures"][2]["mse"], nullptr);
+  EXPECT_EQ(run["pictures"][2]["flip"], nullptr);
   EXPECT_EQ(run["pictures"][2]["identical"], nullptr);
   EXPECT_EQ(run["checks"][0]["passed"], true);
   EXPECT_EQ(run["provenance"], record.provenance);

@@ -24,8 +24,8 @@ Experiment filledExperiment(const fs::path& results, double scale, const std::st
       RunRecord record = makeRecord(4, 3, scale * static_cast<double>(i + 1));
       const RunIdentity identity = identityOf(scenario.points[i], replicate);
       const fs::path stage = experiment.stage(identity);
-      if (i == 0) addPicture(record, stage, {.mse = 1e-4, .psnrDb = 40.5});
-      if (i <= 1) addPicture(record, stage, {.identical = true});
+      if (i == 0) addPicture(record, stage, {.mse = 1e-4, .psnrDb = 40.5, .ssim = 0.98, .flip = 0.03});
+      if (i <= 1) addPicture(record, stage, {.identical = true, .ssim = 1.0});
       if (i == 3) {
         record.status = RunStatus::unsupported;
         record.reason = "needs a \"bigger\", better GPU";
@@ -150,11 +150,13 @@ import pandas as pd
 assert open(sys.argv[1]).readline() == '# volmark.index 1\n'
 table = pd.read_csv(sys.argv[1], skiprows=1)
 assert list(table.columns) == ['run', 'point', 'replicate', 'status', 'reason', 'label.technique', 'label.step', 'mean_ms',
-    'median_ms', 'p99_ms', 'low1_avg_ms', 'fps', 'host_median_ms', 'cpu_median_ms', 'psnr_db', 'generation_ms',
+    'median_ms', 'p99_ms', 'low1_avg_ms', 'fps', 'host_median_ms', 'cpu_median_ms', 'psnr_db', 'ssim', 'flip', 'flip_hdr', 'generation_ms',
     'memory_bytes', 'device', 'commit', 'started'], list(table.columns)
 assert list(table['label.technique']) == ['fake_a'] * 4 + ['fake_b'] * 4
 assert list(table['label.step']) == [0.5, 0.5, 1, 1] * 2 and list(table.replicate) == [0, 1] * 4
 assert list(table.psnr_db[:4]) == [40.5, 40.5, np.inf, np.inf] and table.psnr_db[4:].isna().all()
+assert list(table.ssim[:4]) == [0.98, 0.98, 1, 1] and list(table.flip[:4]) == [0.03, 0.03, 0, 0]
+assert table.flip[4:].isna().all() and table.flip_hdr.isna().all()
 assert list(table.status) == ['completed'] * 6 + ['unsupported'] * 2
 assert table.reason[7] == 'needs a "bigger", better GPU' and table.mean_ms[6:].isna().all()
 assert np.allclose(table.fps[:6] * table.mean_ms[:6], 1000) and (table.generation_ms[:6] == 13.75).all()

@@ -30,19 +30,20 @@ public:
     for (std::size_t view = 0; view < frame.pictures->size(); ++view) {
       std::vector<std::jthread> threads;
       for (int first = 0; first < m_threads; ++first)
-        threads.emplace_back([&, first] { drawRows((*frame.pictures)[view], frame.inputs.views[view], first); });
+        threads.emplace_back([&, first] { drawRows((*frame.pictures)[view], frame, view, first); });
     }
   }
 
   std::vector<gpu::MemoryItem> memory() const override { return {{"values", m_values.size() * sizeof(float)}}; }
 
 private:
-  void drawRows(Picture& picture, const View& view, int first) const {
+  void drawRows(Picture& picture, const Frame& frame, std::size_t view, int first) const {
     for (int y = first; y < picture.height; y += m_threads) {
       for (int x = 0; x < picture.width; ++x) {
-        const float value = project(rayThroughPixel(view, x, y, picture.width, picture.height));
+        const float value = project(rayThroughPixel(frame.inputs.views[view], x, y, picture.width, picture.height));
         picture.color[picture.index(x, y)] = glm::vec4(value, value, value, 1);
         picture.distance[picture.index(x, y)] = HUGE_VALF;
+        if (frame.counting) picture.steps[picture.index(x, y)] = value;
       }
     }
   }
@@ -78,6 +79,7 @@ TechniqueFactory hostThreadsFactory() {
   info.shadings = {ShadingModel::none};
   info.parameters = {ParameterDescriptor::integer("threads", 2, 1, 64, "", "Host threads")};
   info.passes = {{"project", "all rows of all views"}};
+  info.layers = {PictureLayer::steps}; // stands in: the value again
   info.generation = {{"copy", "normalises the voxels"}};
   return {info, []() -> std::unique_ptr<Technique> { return std::make_unique<HostThreads>(); }};
 }

@@ -239,6 +239,10 @@ TEST(DvrRaymarch, CountsSamplesAsTheGeometrySays) {
   EXPECT_NEAR(double(post.counters.at("samples")), steps, 5);
   EXPECT_LT(post.counters.at("gradients"), post.counters.at("samples"));
   EXPECT_GT(post.counters.at("gradients"), post.counters.at("samples") / 10);
+  double counted = 0;
+  for (const float count : post.pictures[0].steps)
+    counted += count;
+  EXPECT_EQ(counted, double(post.counters.at("samples")));
   // Slabs have one more sample a ray.
   const Drawn slabs = drawOnce(dvrRaymarch(), scene, inputs, kWidth, kHeight, kind("preintegrated", 0.7), true);
   EXPECT_NEAR(double(slabs.counters.at("samples")), steps + double(rays), 5);

@@ -256,6 +256,48 @@ TEST(IsoRaymarch, CountsSamplesAsTheGeometrySays) {
   EXPECT_GT(drawn.counters.at("gradients"), 700u);
 }
 
+// The normals of a ball are its radii, whatever the shading; one sum of steps is the counter.
+TEST(IsoRaymarch, CountingFramesHaveNormalsAndSteps) {
+  for (const ShadingModel shading : {ShadingModel::none, ShadingModel::lambert}) {
+    const Scene scene = makeScene(makeVolume(ball, {48, 48, 48}, ScalarType::float32), shading);
+    const FrameInputs inputs = inputsFor(scene, 0.4);
+    const Drawn drawn = drawOnce(isoRaymarch(), scene, inputs, kWidth, kHeight, {}, true);
+    const Picture& picture = drawn.pictures[0];
+    ASSERT_EQ(picture.normal.size(), picture.color.size());
+    double steps = 0;
+    int hits = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const std::size_t pixel = picture.index(x, y);
+        steps += picture.steps.at(pixel);
+        const glm::dvec3 normal(picture.normal[pixel]);
+        if (!std::isfinite(picture.distance[pixel])) {
+          ASSERT_EQ(picture.normal[pixel], glm::vec3(0));
+          continue;
+        }
+        ++hits;
+        const Ray ray = rayThroughPixel(inputs.views[0], x, y, kWidth, kHeight);
+        const glm::dvec3 place = ray.origin + picture.distance[pixel] / ray.cosine * ray.direction;
+        ASSERT_NEAR(glm::length(normal), 1, 1e-5);
+        ASSERT_GT(glm::dot(normal, glm::normalize(place)), 0.99);
+      }
+    }
+    EXPECT_GT(hits, 500);
+    EXPECT_EQ(steps, double(drawn.counters.at("samples")));
+    if (shading == ShadingModel::none) EXPECT_EQ(drawn.counters.at("gradients"), 0u);
+  }
+}
+
+TEST(IsoRaymarch, TimedFramesLeaveTheLayersAlone) {
+  const Scene scene = rippleScene();
+  Session session(isoRaymarch(), scene, withParameters(isoRaymarch(), {}), {kWidth, kHeight, 1});
+  const Picture counted = session.draw(inputsFor(scene, 0.3), true).pictures[0];
+  const Picture timed = session.draw(inputsFor(scene, 0.7)).pictures[0];
+  EXPECT_FALSE(identical(counted, timed));
+  EXPECT_EQ(counted.steps, timed.steps);
+  EXPECT_EQ(counted.normal, timed.normal);
+}
+
 TEST(IsoRaymarch, SaysWhatMemoryItUses) {
   const Scene scene = rippleScene();
   const std::uint64_t before = device().ledger().totalBytes();

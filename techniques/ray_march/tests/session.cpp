@@ -115,7 +115,7 @@ Session::Session(const TechniqueFactory& factory, const Scene& scene, const Para
     : m_scene(scene), m_size(size), m_parameters(parameters), m_commands(device()) {
   static const bool registered = (gpu::registerShaders(volmarkModule()->shaders), true);
   static_cast<void>(registered);
-  m_target = std::make_unique<gpu::Target>(device(), size.width, size.height, size.views);
+  m_target = std::make_unique<gpu::Target>(device(), size.width, size.height, size.views, factory.info.layers);
   m_technique = factory.create();
   const std::uint64_t before = device().ledger().totalBytes();
   PlainRecorder recorder(m_commands);
@@ -152,6 +152,8 @@ Drawn Session::draw(const FrameInputs& inputs, bool counting) {
   Drawn drawn;
   for (int view = 0; view < m_size.views; ++view)
     drawn.pictures.push_back(readBack(device(), *m_target, view));
+  for (int view = 0; view < m_size.views; ++view)
+    readBackLayers(device(), *m_target, view, drawn.pictures[static_cast<std::size_t>(view)]);
   if (counting)
     for (const CounterValue& counter : m_technique->counters())
       drawn.counters[counter.name] = counter.value;

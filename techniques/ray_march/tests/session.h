@@ -37,7 +37,7 @@ gpu::Device& device();
 /// What a frame left behind.
 struct Drawn {
   std::vector<Picture> pictures;                 ///< one per view
-  std::map<std::string, std::uint64_t> counters; ///< of counting frames
+  std::map<std::string, std::uint64_t> counters; ///< of counting frames, as the pictures' layers
 };
 
 /// One technique, prepared.
