@@ -10,10 +10,17 @@ constexpr double kDeviation = 1.5;
 constexpr double kC1 = 0.01 * 0.01;
 constexpr double kC2 = 0.03 * 0.03;
 
-Plane product(const Plane& a, const Plane& b) {
+Plane products(const Plane& a, const Plane& b) {
   Plane result(a.width, a.height);
   for (std::size_t i = 0; i < a.values.size(); ++i)
     result.values[i] = a.values[i] * b.values[i];
+  return result;
+}
+
+Plane sumsOfSquares(const Plane& a, const Plane& b) {
+  Plane result(a.width, a.height);
+  for (std::size_t i = 0; i < a.values.size(); ++i)
+    result.values[i] = a.values[i] * a.values[i] + b.values[i] * b.values[i];
   return result;
 }
 
@@ -24,20 +31,18 @@ Plane ssimMap(const Plane& a, const Plane& b) {
   const Kernel window = gaussianKernel(kDeviation, kSsimWindow / 2);
   const Plane meanA = filterBoth(a, window);
   const Plane meanB = filterBoth(b, window);
-  const Plane meanAA = filterBoth(product(a, a), window);
-  const Plane meanBB = filterBoth(product(b, b), window);
-  const Plane meanAB = filterBoth(product(a, b), window);
+  const Plane meanSquares = filterBoth(sumsOfSquares(a, b), window);
+  const Plane meanProduct = filterBoth(products(a, b), window);
 
-  // Equation 13, with the moments of equations 14 to 16.
+  // Equation 13, with the moments of equations 14 to 16; of the variances only the sum matters.
   Plane map(a.width, a.height);
   for (std::size_t i = 0; i < map.values.size(); ++i) {
     const double ma = meanA.values[i];
     const double mb = meanB.values[i];
-    const double varianceA = meanAA.values[i] - ma * ma;
-    const double varianceB = meanBB.values[i] - mb * mb;
-    const double covariance = meanAB.values[i] - ma * mb;
-    map.values[i] =
-        (2 * ma * mb + kC1) * (2 * covariance + kC2) / ((ma * ma + mb * mb + kC1) * (varianceA + varianceB + kC2));
+    const double squaredMeans = ma * ma + mb * mb;
+    const double variances = meanSquares.values[i] - squaredMeans;
+    const double covariance = meanProduct.values[i] - ma * mb;
+    map.values[i] = (2 * ma * mb + kC1) * (2 * covariance + kC2) / ((squaredMeans + kC1) * (variances + kC2));
   }
   return map;
 }

@@ -79,7 +79,7 @@ def test_flip_equals_the_second_writing(experiment):
     for row, picture, reference in compared(experiment):
         flip = ldr_flip(numpy.clip(picture, 0, 1), numpy.clip(reference, 0, 1)).mean()
         assert flip > 0.001
-        assert row["flip"] == pytest.approx(flip, abs=1e-4)
+        assert row["flip"] == pytest.approx(flip, abs=1e-5)
 
 
 def test_hdr_flip_is_there_where_colours_exceed_one(experiment):
@@ -89,7 +89,7 @@ def test_hdr_flip_is_there_where_colours_exceed_one(experiment):
         seen.add(exceeds)
         assert (row["flip_hdr"] is not None) == exceeds
         if exceeds:
-            assert row["flip_hdr"] == pytest.approx(hdr_flip(picture, reference).mean(), abs=1e-4)
+            assert row["flip_hdr"] == pytest.approx(hdr_flip(picture, reference).mean(), abs=1e-5)
     assert seen == {False, True}
 
 
