@@ -22,8 +22,8 @@ packages=(
   glslang-dev glslang-tools libbenchmark-dev libcli11-dev libfmt-dev libglm-dev libgtest-dev libgmock-dev libimath-dev
   libopenexr-dev libvulkan-dev libxxhash-dev nlohmann-json3-dev spirv-tools vulkan-validationlayers zlib1g-dev
   # analysis and tests
-  libbenchmark-tools openexr openimageio-tools python3 python3-jinja2 python3-jsonschema python3-matplotlib python3-numpy
-  python3-pandas python3-pytest python3-scipy python3-skimage
+  chromium libbenchmark-tools openexr openimageio-tools python3 python3-jinja2 python3-jsonschema python3-matplotlib
+  python3-numpy python3-pandas python3-pytest python3-scipy python3-skimage
   # data: a real head CT, a real head MRI
   invesalius-examples mricron-data
 )

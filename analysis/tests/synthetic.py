@@ -3,7 +3,11 @@
 import hashlib
 import json
 import math
+import os
 import statistics as stdlib
+import sys
+from itertools import product
+from pathlib import Path
 
 import numpy as np
 
@@ -222,7 +226,10 @@ def write_pictures(folder, run_folder, labels, step, technique):
             distance[HEIGHT // 2, 24], distance[2, 2] = np.inf, 300.0  # one missed and one spurious pixel
         name = digest("reference", labels["scene"], surface, phase)
         write_layers(folder / "references" / f"{name}.exr", truth, truth_distance if surface else None)
-        write_layers(run_folder / f"frame_{frame:04d}.exr", color, distance if surface else None)
+        # One technique counts its iterations and writes normals; the temporal one lacks the newer errors.
+        more = iterations(phase, step) if labels["technique"] == "dvr_raymarch" else {}
+        newer = {} if labels["technique"] == "dvr_temporal" else {"ssim": 1 - 0.01 * step, "flip": 0.03 * step}
+        write_layers(run_folder / f"frame_{frame:04d}.exr", color, distance if surface else None, more)
         mse = plain_mse(color, truth)
         hit = np.isfinite(distance) & np.isfinite(truth_distance)
         apart = np.abs(distance[hit] - truth_distance[hit])
@@ -230,7 +237,7 @@ def write_pictures(folder, run_folder, labels, step, technique):
                  "depth_max_voxels": float(apart.max()), "missed_share": 3e-4, "spurious_share": 3e-4}
         rows.append({"frame": frame, "phase": phase, "view": 0, "file": f"frame_{frame:04d}.exr", "reference": "cpu",
                      "reference_file": f"references/{name}.exr", "mse": mse, "psnr_db": -10 * math.log10(mse),
-                     "identical": False, **(depth if surface else dict.fromkeys(depth)),
+                     "identical": False, **newer, **(depth if surface else dict.fromkeys(depth)),
                      "cumulative_ms": 12.5 * (frame + 1) if technique["history"] == "visible" else None})
     return rows
 
@@ -245,9 +252,69 @@ def plain_mse(a, b):
     return float(np.mean((encoded(a) - encoded(b)) ** 2))
 
 
-def write_layers(path, color, distance):
+def iterations(phase, step):
+    """Channels beside colour: steps of each ray and a normal."""
+    y, x = np.mgrid[0:HEIGHT, 0:WIDTH].astype("<f4")
+    return {"steps": np.floor((x + y * (1 + phase)) / step).astype("<f4"), "N.X": 0 * x, "N.Y": 0 * x, "N.Z": 0 * x + 1}
+
+
+def write_layers(path, color, distance, more=()):
     path.parent.mkdir(parents=True, exist_ok=True)
-    channels = {n: np.ascontiguousarray(color[..., i]).astype("<f2") for i, n in enumerate("RGBA")}
+    channels = {n: np.ascontiguousarray(color[..., i]).astype("<f2") for i, n in enumerate("RGBA")} | dict(more)
     if distance is not None:
         channels["Z"] = distance.astype("<f4")
     write_exr(path, channels)
+
+
+def write_grid(folder, runs=1000, frames=60):
+    """A large experiment: `runs` points of one process each, on four axes. Pictures are links to a few files."""
+    small = write_experiment(folder.with_name(folder.name + ".small"))
+    templates = {}
+    for path in small.glob("runs/*/[!.]*/run.json"):
+        document = json.loads(path.read_text())
+        if document["labels"]["scene"] == "nested_ellipsoids" and "step" in document["labels"]:
+            templates.setdefault(document["labels"]["technique"], (path.parent, document))
+    steps = max(1, runs // 100)
+    values = product(sorted(templates), range(1, steps + 1), range(1, 11), range(1, 6))
+    document = json.loads((small / "experiment.json").read_text()) | {
+        "name": "grid", "axes": ["technique", "step", "size", "isovalue"], "points": []}
+    for index, (technique, step, size, isovalue) in enumerate(values):
+        labels = {"technique": technique, "step": str(step / 4), "size": str(32 * size), "isovalue": str(isovalue / 10)}
+        group = f"step={step},size={size},isovalue={isovalue}"
+        document["points"].append({"index": index, "labels": labels, "block": 0, "group": group})
+        _write_grid_run(folder, small, *templates[technique], document["points"][-1], frames)
+    (folder / "experiment.json").write_text(json.dumps(document))
+    return folder
+
+
+def _write_grid_run(folder, small, template_folder, template, point, frames):
+    number, labels = point["index"], point["labels"]
+    name = digest("grid", number)
+    run_folder = folder / "runs" / name[:2] / name
+    run_folder.mkdir(parents=True)
+    (folder / "references").mkdir(exist_ok=True)
+    base = 0.05 if labels["technique"] == "iso_raymarch" else 0.09
+    ms = base * float(labels["size"]) / float(labels["step"]) ** 0.7
+    rows = []
+    for kind, orbits in (("headline", ORBITS), ("breakdown", 1)):
+        for orbit, frame in product(range(orbits), range(frames)):
+            time = ms * (1 + 0.2 * math.sin(6.28 * frame / frames) + 0.001 * ((7 * frame + 3 * orbit + number) % 11))
+            row = dict(orbit_kind=kind, orbit=orbit, frame=frame, phase=frame / frames, host_ms=time, interval_ms=time,
+                       cpu_ms=time, update_ms=0, draw_ms=time, frame_ms=time, gpu_ms=time, disturbed="")
+            rows.append(row | {"pass.march": time if kind == "breakdown" else ""})
+    write_csv(run_folder / "frames.csv", "frames", rows)
+    os.link(template_folder / "counters.csv", run_folder / "counters.csv")
+    pictures = []
+    for picture in template["pictures"]:
+        reference = f"references/{digest(point['group'], labels['technique'], picture['frame'])}.exr"
+        os.link(small / picture["reference_file"], folder / reference)
+        os.link(template_folder / picture["file"], run_folder / picture["file"])
+        psnr = 60 - 12 * float(labels["step"]) - number % 7
+        pictures.append(picture | {"reference_file": reference, "psnr_db": psnr, "mse": 10 ** (-psnr / 10)})
+    (run_folder / "run.json").write_text(json.dumps(template | {
+        "run": name, "point": digest("point", number), "point_index": number, "group": point["group"], "labels": labels,
+        "pictures": pictures}))
+
+
+if __name__ == "__main__":  # python3 synthetic.py FOLDER [RUNS]: to measure a report of a large experiment
+    print(write_grid(Path(sys.argv[1]), *map(int, sys.argv[2:])))

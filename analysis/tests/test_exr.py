@@ -41,6 +41,28 @@ def test_picture_layers(tmp_path):
     assert np.array_equal(picture.distance, written["Z"])
 
 
+@pytest.mark.parametrize("second_view", ["right.{}", "N.right.{}"])
+def test_steps_and_normals(tmp_path, second_view):
+    """In a further view a layer's name comes as volmark writes it or as OpenEXR does."""
+    left, more = channels(4, 6, False), {}
+    for i, name in enumerate(("steps", "N.X", "N.Y", "N.Z")):
+        left[name] = RNG.random((4, 6)).astype("<f4")
+        more[second_view.format(name[2:]) if name != "steps" and second_view.startswith("N") else f"right.{name}"] = \
+            left[name] + 1
+    write_exr(tmp_path / "a.exr", left | more | {f"right.{n}": left[n] for n in "RGB"}, views=["left", "right"])
+    first, second = read_exr(tmp_path / "a.exr")
+    assert np.array_equal(first.steps, left["steps"]) and np.array_equal(second.steps, left["steps"] + 1)
+    for i, axis in enumerate("XYZ"):
+        assert np.array_equal(first.normal[..., i], left[f"N.{axis}"])
+        assert np.array_equal(second.normal[..., i], left[f"N.{axis}"] + 1)
+
+
+def test_normals_need_all_three_components(tmp_path):
+    write_exr(tmp_path / "a.exr", channels(4, 6, False) | {"N.X": np.zeros((4, 6), "<f4")})
+    (picture,) = read_exr(tmp_path / "a.exr")
+    assert picture.normal is None and picture.steps is None
+
+
 def test_no_depth_and_no_alpha(tmp_path):
     written = {n: a for n, a in channels(4, 6, False).items() if n in "RGB"}
     write_exr(tmp_path / "a.exr", written)

@@ -158,7 +158,7 @@ def test_absent_optional_parts_are_fine(fresh_folder):
         lines = rows.read_text().splitlines()
         rows.write_text("\n".join(",".join(line.split(",")[:12]) if i else line for i, line in enumerate(lines)) + "\n")
     experiment = load_experiment(fresh_folder)
-    assert "not measured" in render(experiment, point_results(experiment))
+    assert "not measured" in render(experiment, point_results(experiment), [])
 
 
 def test_all_failed(tmp_path, capsys):

@@ -50,6 +50,17 @@ def test_volumes_have_no_depth_error(experiment):
     assert all(s.depth is None and s.error is not None for s in pictures.captured_frames(experiment, run))
 
 
+def test_iterations_keep_their_mean_and_share_a_scale(experiment):
+    run = next(r for r in experiment.runs if r.completed and r.technique["name"] == "dvr_raymarch")
+    whole, small = (pictures.captured_frames(experiment, run, widest)[0].steps for widest in (None, 48))
+    assert whole.shape == (synthetic.HEIGHT, synthetic.WIDTH) and small.mean() == pytest.approx(whole.mean())
+    bar = pictures.scale_bar("steps")[0]
+    drawn = pictures.steps_map(np.array([[0.0, 0.5 * whole.max(), whole.max()]]), whole.max())[0]
+    assert (drawn[0] == bar[0]).all() and (drawn[2] == bar[-1]).all() and (drawn[1] == bar[128]).all()
+    other = next(r for r in experiment.runs if r.completed and r.technique["draws"] == "isosurface")
+    assert pictures.captured_frames(experiment, other)[0].steps is None
+
+
 @pytest.mark.parametrize("widest", [96, 95, 40, 1])
 def test_shrunk_pictures_fit(experiment, widest):
     run = next(r for r in experiment.runs if r.completed)
@@ -65,7 +76,7 @@ def test_shrinking_keeps_mean_light_and_worst_error():
 
 
 def test_maps_are_monotone_in_lightness():
-    for kind in ("error", "depth"):
+    for kind in ("error", "depth", "steps"):
         lightness = pictures.scale_bar(kind)[0] @ np.array([0.2126, 0.7152, 0.0722])
         assert (np.diff(lightness) >= -1.0).all() and lightness[-1] - lightness[0] > 150
 

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import pytest
 import synthetic
 from volmark_analysis.__main__ import main
+from volmark_analysis.comparisons import technique_comparisons
 from volmark_analysis.load import load_experiment
 from volmark_analysis.plots import FAINT, ON_DARK, TEXT, figure_of, plots_of, styles_of, svg_of
 from volmark_analysis.points import point_results
@@ -20,17 +21,18 @@ VOID = {"meta", "img", "source", "br", "hr", "input", "link"}
 
 
 class Page(HTMLParser):
-    """Checks nesting; keeps text, addresses and table rows."""
+    """Checks nesting; keeps text, addresses, attributes' names and table rows."""
 
     def __init__(self, text):
         super().__init__()
-        self.open, self.addresses, self.rows, self.tags, self.words = [], [], [], [], []
+        self.open, self.addresses, self.rows, self.tags, self.words, self.attributes = [], [], [], [], [], []
         self.feed(text)
         self.close()
         assert not self.open
 
     def handle_starttag(self, tag, attributes):
         self.tags.append(tag)
+        self.attributes += [k for k, _ in attributes]
         self.addresses += [v for k, v in attributes if k in ("src", "srcset", "href", "action", "data", "poster")]
         if tag == "tr":
             self.rows.append("")
@@ -87,9 +89,10 @@ def test_says_what_matters_first(made):
 def test_pictures_and_plots_are_complete(made):
     _, text, page = made
     images = [a for a in page.addresses if a.startswith("data:image/png")]
-    # Per frame: reference and error of isosurfaces (with depth) and volumes; two scale bars.
-    iso, dvr_first, dvr_second = 1 + 2 * 3, 1 + 3 * 2, 1 + 1 * 2
-    assert len(images) == 2 * (2 * iso + dvr_first + dvr_second) + 2
+    # Per frame: reference and error of isosurfaces (with depth) and volumes (with iterations unless temporal).
+    iso, dvr_first, dvr_second = 1 + 2 * 3, 1 + 2 * 3 + 1 * 2, 1 + 1 * 3
+    # Scale bars: two kinds of error, iterations of two groups, and one for each of five quantities of the grid.
+    assert len(images) == 2 * (2 * iso + dvr_first + dvr_second) + 2 + 2 + 5
     for address in page.addresses:
         kind, data = re.fullmatch(r"data:(image/[a-z+]+);base64,(.*)", address).groups()
         data = base64.b64decode(data, validate=True)
@@ -112,7 +115,7 @@ def test_leaves_tables_and_plots(made):
     names = {p.name for p in (folder / "tables").iterdir()}
     assert {"results.md", "results.tex", "results.csv", "work.md", "comparisons.md"} <= names
     stems = {p.stem for p in (folder / "plots").glob("*.svg")}
-    assert {"mean", "orbit", "error_time", "depth_time", "passes", "counter_samples"} <= stems
+    assert {"mean", "orbit", "error_time", "depth_time", "ssim_time", "flip_time", "passes", "counter_samples"} <= stems
     assert stems == {p.stem for p in (folder / "plots").glob("*.png")}
     assert not list(folder.glob("*.part"))
 
@@ -179,13 +182,14 @@ def test_runs_from_the_repository():
 
 def test_many_scenes_are_folded_away(experiment_folder):
     results = point_results(load_experiment(experiment_folder))
-    first, folded = findings(results)
+    first, folded = findings(results, technique_comparisons(results))
     assert len(first) == 3 + 2 and not folded
     for i, r in enumerate(results):
         for run in r.completed + r.others:
             run.config["scene"] = f"scene {i}"
-    first, folded = findings(results)
+    first, folded = findings(results, technique_comparisons(results))
     assert len(first) == 3 and len(folded) == 8
     alone = [r for r in results if r.technique == "iso_raymarch"]
-    assert len(findings(alone)[0]) == 4  # nothing to compare: the scenes are what there is to say
-    assert "took" in findings(alone)[0][0]
+    first, folded = findings(alone, technique_comparisons(alone))
+    assert len(first) == 4 and not folded  # nothing to compare: the scenes are what there is to say
+    assert "took" in first[0]

@@ -6,6 +6,7 @@ import re
 import pytest
 from volmark_analysis.__main__ import main
 from volmark_analysis.columns import bytes_text, count_text, number_text
+from volmark_analysis.comparisons import technique_comparisons
 from volmark_analysis.load import load_experiment
 from volmark_analysis.pivots import pivot_of, pivot_to_csv, pivot_to_markdown, pivot_to_tex
 from volmark_analysis.points import point_results
@@ -107,7 +108,8 @@ def test_identical_pictures_have_no_psnr(fresh_folder, capsys):
                 picture.update(mse=0.0, psnr_db=None, identical=True)
             path.write_text(json.dumps(document))
     assert "| identical |" in printed(capsys, "table", str(fresh_folder))
-    assert "identical" in findings(point_results(load_experiment(fresh_folder)))[0][3]
+    results = point_results(load_experiment(fresh_folder))
+    assert "identical" in findings(results, technique_comparisons(results))[0][3]
 
 
 def test_pivots_need_one_or_two_axes(experiment_folder):

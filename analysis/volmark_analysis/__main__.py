@@ -1,12 +1,13 @@
-"""python3 -m volmark_analysis: reports, tables, plots and comparisons from an experiment folder."""
+"""python3 -m volmark_analysis: reports, tables, plots, comparisons and exports from an experiment folder."""
 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from pathlib import Path
 
-from . import comparisons, plots, report, tables
+from . import comparisons, export, plots, report, tables
 from .errors import InputError
 from .load import load_experiment
 from .points import point_results
@@ -18,6 +19,7 @@ _EPILOG = """examples:
   python3 -m volmark_analysis plots results/quick
   python3 -m volmark_analysis compare results/quick --a technique=iso_raymarch --b technique=iso_octree
   python3 -m volmark_analysis compare results/quick --a step=0.5 --b step=1.0
+  python3 -m volmark_analysis export results/quick --format github-action-benchmark -o benchmark.json
 
 DIR is an experiment folder: the one with experiment.json and runs/. Unusable input gives one line and exit code 2.
 The statistics are defined in harness/README.md, section 6, and at the end of every report."""
@@ -65,6 +67,11 @@ def _parser() -> argparse.ArgumentParser:
     for side in ("a", "b"):
         sub.add_argument(f"--{side}", action="append", required=True, metavar="LABEL=VALUE",
                          help="may be repeated, or joined by commas")
+    sub = command("export", _export, "write the results in the format of another tool",
+                  "github-action-benchmark: customSmallerIsBetter JSON. bencher: Bencher Metric Format JSON.\n"
+                  "presentmon: a CSV row per frame, with the columns that exist without a window.")
+    sub.add_argument("--format", choices=tuple(export.WRITERS), required=True)
+    sub.add_argument("-o", "--output", type=Path, metavar="FILE", help="where it goes (default: standard output)")
     return parser
 
 
@@ -110,6 +117,20 @@ def _compare(options) -> None:
     a = comparisons.parse_selection(options.a, results, "--a")
     b = comparisons.parse_selection(options.b, results, "--b")
     sys.stdout.write(comparisons.to_markdown(comparisons.selection_comparisons(results, a, b)))
+
+
+def _export(options) -> None:
+    experiment, results = _load(options)
+    text = export.WRITERS[options.format](experiment, results)
+    if options.output is None:
+        sys.stdout.write(text)
+        return
+    staged = options.output.with_name(options.output.name + ".part")
+    try:
+        staged.write_text(text, encoding="utf-8")
+        os.replace(staged, options.output)
+    except OSError as error:
+        raise InputError(f"{error.filename or options.output}: can't be written ({error.strerror or error})") from None
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Reads the OpenEXR files that volmark writes: single-part scan lines, uncompressed or zip, half, float or uint.
 
 Layout: https://openexr.com, "OpenEXR File Layout". Stereo pictures are multi-view: the default view's channels
-are plain (R, G, B, A, Z), the others carry the view's name ("right.R").
+are plain (R, G, B, A, Z, steps, N.X ...), the others carry the view's name ("right.R").
 """
 
 from __future__ import annotations
@@ -24,11 +24,16 @@ _PIXEL_TYPES = {0: np.dtype("<u4"), 1: np.dtype("<f2"), 2: np.dtype("<f4")}
 
 @dataclass
 class Picture:
-    """One view. `color`: height x width x 4, linear, premultiplied alpha, float32. `distance`: height x width,
-    world units, infinite where nothing is; None if the file has no depth."""
+    """One view; arrays of height x width (x components), float32. Layers that the file lacks are None."""
 
     color: np.ndarray
+    """Four components: linear, premultiplied alpha."""
     distance: np.ndarray | None
+    """World units, infinite where nothing is."""
+    steps: np.ndarray | None = None
+    """Iterations of each pixel's ray."""
+    normal: np.ndarray | None = None
+    """Three components: world axes."""
 
 
 def read_exr(path: str | Path) -> list[Picture]:
@@ -143,11 +148,18 @@ def _unpredict(block: bytes) -> bytes:
 
 
 def _picture_of(channels: dict[str, np.ndarray], prefix: str, path) -> Picture:
+    def layer(name):
+        # In a view of a multi-view file OpenEXR writes layers as "N.right.X"; volmark writes "right.N.X".
+        group, dot, last = name.rpartition(".")
+        found = channels.get(prefix + name, channels.get(group + dot + prefix + last))
+        return None if found is None else found.astype(np.float32)
+
     missing = [name for name in "RGB" if prefix + name not in channels]
     if missing:
         raise InputError(f"{path}: no channel {prefix}{missing[0]}, found: {', '.join(channels)}")
-    planes = [channels[prefix + name].astype(np.float32) for name in "RGB"]
-    alpha = channels.get(prefix + "A")
-    planes.append(np.ones_like(planes[0]) if alpha is None else alpha.astype(np.float32))
-    distance = channels.get(prefix + "Z")
-    return Picture(np.stack(planes, axis=-1), None if distance is None else distance.astype(np.float32))
+    planes = [layer(name) for name in "RGBA"]
+    if planes[3] is None:
+        planes[3] = np.ones_like(planes[0])
+    normal = [layer(f"N.{axis}") for axis in "XYZ"]
+    return Picture(np.stack(planes, axis=-1), layer("Z"), layer("steps"),
+                   None if any(plane is None for plane in normal) else np.stack(normal, axis=-1))

@@ -1,4 +1,5 @@
-"""Pictures of captured frames as a reader sees them: frame, reference, error map and depth error."""
+"""Pictures of captured frames as a reader sees them: frame, reference, and maps of colour error, depth error and
+iterations."""
 
 from __future__ import annotations
 
@@ -21,7 +22,8 @@ COLOR_ERROR_RANGE = (1e-3, 1.0)
 DEPTH_ERROR_RANGE = (1e-3, 10.0)
 """Voxels."""
 MISSED, SPURIOUS, NOTHING = (213, 94, 0), (86, 180, 233), (128, 128, 128)
-_COLOR_MAP, _DEPTH_MAP = "magma", "viridis"
+MAPS = {"error": "magma", "depth": "viridis", "steps": "cividis", "grid": "cividis"}
+"""Perceptually uniform."""
 
 
 @dataclass
@@ -33,12 +35,15 @@ class CapturedFrame:
     reference: np.ndarray | None = None
     error: np.ndarray | None = None
     depth: np.ndarray | None = None
+    steps: np.ndarray | None = None
+    """Iterations per ray, not yet a picture: the scale is that of all pictures shown together, see steps_map()."""
 
 
-def captured_frames(experiment: Experiment, run: Run, widest: int | None = None) -> list[CapturedFrame]:
-    """All captured pictures of a run, at most `widest` pixels wide."""
+def captured_frames(experiment: Experiment, run: Run, widest: int | None = None,
+                    rows: list[dict] | None = None) -> list[CapturedFrame]:
+    """The captured pictures of a run (or only those of `rows`), at most `widest` pixels wide."""
     background = background_of(run)
-    return [_captured(experiment, run, row, background, widest) for row in run.pictures]
+    return [_captured(experiment, run, row, background, widest) for row in (run.pictures if rows is None else rows)]
 
 
 def background_of(run: Run) -> np.ndarray:
@@ -52,6 +57,8 @@ def _captured(experiment: Experiment, run: Run, row: dict, background, widest) -
     picture = _view(run.folder / row["file"], row["view"])
     factor = 1 if widest is None else -(-picture.color.shape[1] // widest)
     shown = CapturedFrame(row, to_display(_shrunk(over(picture.color, background), factor)))
+    if picture.steps is not None:
+        shown.steps = _shrunk(np.nan_to_num(picture.steps), factor)
     name = row.get("reference_file")
     if not name:
         return shown
@@ -61,7 +68,7 @@ def _captured(experiment: Experiment, run: Run, row: dict, background, widest) -
                          f"{run.folder / row['file']}")
     shown.reference = to_display(_shrunk(over(reference.color, background), factor))
     error = color_error(picture.color, reference.color, background)
-    shown.error = map_colors(_worst(error, factor), COLOR_ERROR_RANGE, _COLOR_MAP)
+    shown.error = map_colors(_worst(error, factor), COLOR_ERROR_RANGE, MAPS["error"])
     if picture.distance is not None and reference.distance is not None and row.get("depth_p995_voxels") is not None:
         shown.depth = _depth_map(picture.distance, reference.distance, _voxel_of(picture, reference, row), factor)
     return shown
@@ -111,8 +118,16 @@ def map_colors(values: np.ndarray, limits: tuple[float, float], name: str) -> np
     """Logarithmic between the limits; values below are drawn as the lowest."""
     low, high = np.log10(limits)
     with np.errstate(divide="ignore"):
-        place = (np.log10(np.maximum(values, 0)) - low) / (high - low)
+        return _colored((np.log10(np.maximum(values, 0)) - low) / (high - low), name)
+
+
+def _colored(place: np.ndarray, name: str) -> np.ndarray:
     return np.rint(255 * matplotlib.colormaps[name](np.clip(place, 0, 1))[..., :3]).astype(np.uint8)
+
+
+def steps_map(steps: np.ndarray, most: float) -> np.ndarray:
+    """Iterations per ray from 0 to `most`, linear."""
+    return _colored(steps / most, MAPS["steps"])
 
 
 def _voxel_of(picture: Picture, reference: Picture, row: dict) -> float:
@@ -128,7 +143,7 @@ def _depth_map(distance: np.ndarray, reference: np.ndarray, voxel: float, factor
     both = hit & truth
     apart = np.zeros(distance.shape)
     apart[both] = np.abs(distance[both] - reference[both]) / voxel
-    colors = map_colors(_worst(apart, factor), DEPTH_ERROR_RANGE, _DEPTH_MAP)
+    colors = map_colors(_worst(apart, factor), DEPTH_ERROR_RANGE, MAPS["depth"])
     colors[_worst(both, factor) == 0] = NOTHING
     colors[_worst(truth & ~hit, factor) > 0] = MISSED
     colors[_worst(hit & ~truth, factor) > 0] = SPURIOUS
@@ -163,18 +178,5 @@ def png_of(pixels: np.ndarray, colors: int | None = None) -> bytes:
 
 
 def scale_bar(kind: str) -> np.ndarray:
-    """The colours of the "error" or "depth" map from its lowest to its highest value, one row."""
-    limits, name = (COLOR_ERROR_RANGE, _COLOR_MAP) if kind == "error" else (DEPTH_ERROR_RANGE, _DEPTH_MAP)
-    return map_colors(np.geomspace(*limits, 256)[None, :], limits, name)
-
-
-def write_pictures(folder: Path, experiment: Experiment, runs: dict[str, Run]) -> None:
-    """Full-size PNGs: `runs` by the start of the file names."""
-    for stem, run in runs.items():
-        for shown in captured_frames(experiment, run):
-            folder.mkdir(parents=True, exist_ok=True)
-            view = f"_view{shown.row['view']}" if shown.row["view"] else ""
-            for part in ("frame", "reference", "error", "depth"):
-                pixels = getattr(shown, part)
-                if pixels is not None:
-                    (folder / f"{stem}_{shown.row['frame']:04d}{view}_{part}.png").write_bytes(png_of(pixels))
+    """The colours of one of MAPS from its lowest to its highest value, one row."""
+    return _colored(np.linspace(0, 1, 256)[None, :], MAPS[kind])

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 from .columns import error_text, number_text  # noqa: E402
+from .limits import MOST_BARS, MOST_COUNTER_PLOTS, MOST_LINES, MOST_PANELS, evenly  # noqa: E402
 from .points import PointResult, common_text, groups_of, label_text, varying_axes  # noqa: E402
 
 # Okabe and Ito's palette, told apart by colour-blind readers; yellow is left out for its contrast on white.
@@ -29,7 +30,13 @@ _MARKERS = "osD^vP*X"
 _LOG_FROM_RATIO = 12.0
 _MOST_BANDS = 6
 _MOST_IN_A_PANEL = 8
+_MOST_NAMED = 12
+"""Points with a legend entry each; beyond, the legend names techniques."""
 
+
+_PANEL_WIDTH, _LINE = 4.9, 0.195
+"""Inches; a line of a legend."""
+_LONGEST_NAME = 60
 
 TEXT, FAINT, GROUND = "#22252a", "#d9dce1", "#ffffff"
 ON_DARK = {TEXT: "#e3e6ea", FAINT: "#3a3f47", GROUND: "#16181c"}
@@ -49,6 +56,8 @@ class Panel:
     results: list[PointResult]
     axes: list[str]
     """Labels that tell the panel's results apart."""
+    note: str = ""
+    """What of the panel is left out."""
     slots: int = 0
     """Bars that the axis has room for, so that panels side by side have equal bars."""
 
@@ -63,6 +72,10 @@ class Plot:
     panels: list[Panel]
     draw: Callable
     height: Callable[[Panel], float]
+    choice: str = ""
+    """Plots of one choice show the same points; a reader picks one."""
+    note: str = ""
+    """Which panels are left out."""
 
 
 def styles_of(results: list[PointResult]) -> dict[int, Style]:
@@ -106,30 +119,73 @@ def plots_of(results: list[PointResult]) -> list[Plot]:
     panels = panels_of(results)
     if not panels:
         return []
+    whole = _scene_panels(results)
 
-    def having(test):
-        kept = [Panel(p.title, [r for r in p.results if test(r)], p.axes) for p in panels]
-        return [p for p in kept if p.results]
+    def having(name):
+        return _with(whole, lambda r: r.errors.get(name) is not None or name == "psnr_db" and r.errors)
 
     def bars_height(panel):
         return 0.75 + 0.42 * len(panel.results)
 
+    better = {"higher": "Higher and further left is better.", "lower": "Lower and further left is better."}
+    lines = "Lines join the variants of a technique; of many points, those that no other beats in both."
     plots = [
         Plot("mean", "Mean frame time", "Bars: mean of update and draw over all orbits. Thin lines: 95 % interval with five "
              "processes or more, otherwise lowest and highest mean of processes or orbits. Beside the time: the lowest PSNR.",
-             panels, draw_means, bars_height),
+             _thinned(panels, MOST_BARS), draw_means, bars_height),
         Plot("orbit", "Frame time over the orbit", "Lines: median over orbits at each pose. Bands: lowest and "
              "highest orbit; they may leave the panel.",
-             panels, draw_orbit, lambda p: 2.9),
-        Plot("error_time", "Error against time", "Higher and further left is better. Lines join the variants of a technique.",
-             having(lambda r: r.errors), draw_error_time, lambda p: 2.9),
-        Plot("depth_time", "Depth error against time", "Lower and further left is better. Worst captured picture.",
-             having(lambda r: r.errors.get("depth_p995_voxels")), draw_depth_time, lambda p: 2.9),
+             _thinned(panels, MOST_LINES), draw_orbit, lambda p: 2.9)]
+    for error, name, direction, label, draw in (
+            ("psnr_db", "error_time", "higher", "PSNR", draw_error_time),
+            ("ssim", "ssim_time", "higher", "SSIM (1: equal)", _draw_named_error("ssim", "lowest SSIM")),
+            ("flip", "flip_time", "lower", "FLIP (0: equal)", _draw_named_error("flip", "highest FLIP")),
+            ("depth_p995_voxels", "depth_time", "lower", "Depth error", draw_depth_time)):
+        title = "Error against time" if error == "psnr_db" else f"{label.split(' (')[0]} against time"
+        plots.append(Plot(name, title, f"{label} of the worst captured picture. {better[direction]} {lines}",
+                          having(error), draw, lambda p: 2.9, choice="error"))
+    plots.append(
         Plot("passes", "Time by pass", "Mean time of each pass, from the breakdown orbits: stamping every pass may slow a "
-             "frame, so the sum can exceed the mean frame time.", having(lambda r: r.pass_ms), draw_passes,
-             lambda p: bars_height(p) + 0.3),
-    ]
-    return [p for p in plots if p.panels] + _counter_plots(panels)
+             "frame, so the sum can exceed the mean frame time.",
+             _thinned(_with(panels, lambda r: r.pass_ms), MOST_BARS), draw_passes, lambda p: bars_height(p) + 0.3))
+    return [_limited(p) for p in plots + _counter_plots(panels) if p.panels]
+
+
+def _scene_panels(results: list[PointResult]) -> list[Panel]:
+    """As panels_of(), but a scene with very many groups stays whole: points need less room than bars."""
+    panels = panels_of(results)
+    if len(panels) <= MOST_PANELS:
+        return panels
+    axes = varying_axes(results)
+    scenes: dict[str, list[PointResult]] = {}
+    for r in (r for r in results if r.completed):
+        scenes.setdefault(r.scene, []).append(r)
+    return [Panel(common_text(m, axes) or "all points", m, [a for a in varying_axes(m) if a != "scene"])
+            for m in scenes.values()]
+
+
+def _with(panels: list[Panel], test) -> list[Panel]:
+    kept = [replace(p, results=[r for r in p.results if test(r)]) for p in panels]
+    return [p for p in kept if p.results]
+
+
+def _thinned(panels: list[Panel], most: int) -> list[Panel]:
+    """Of a panel with very many results the fastest, the slowest and some evenly between stay."""
+    def thin(panel):
+        if len(panel.results) <= most:
+            return panel
+        kept = evenly(sorted(panel.results, key=lambda r: r.statistics["mean_ms"]), most)
+        return replace(panel, results=kept,
+                       note=f"{most} of {len(panel.results)} points, evenly spaced from the fastest to the slowest")
+    return [thin(p) for p in panels]
+
+
+def _limited(plot: Plot) -> Plot:
+    panels = evenly(plot.panels, MOST_PANELS)
+    if len(panels) == len(plot.panels):
+        return plot
+    return replace(plot, panels=panels, note=f"{len(panels)} of {len(plot.panels)} panels are shown, evenly chosen; "
+                   f"the tables and heat maps hold all points.")
 
 
 def _counter_plots(panels: list[Panel]) -> list[Plot]:
@@ -140,11 +196,14 @@ def _counter_plots(panels: list[Panel]) -> list[Plot]:
         def draw(ax, panel, styles, name=name):
             draw_counter(ax, panel, styles, name)
 
-        kept = [Panel(p.title, [r for r in p.results if _counter_varies(r, name)], p.axes) for p in panels]
-        kept = [p for p in kept if p.results]
+        kept = _thinned(_with(evenly(panels, MOST_PANELS), lambda r, n=name: _counter_varies(r, n)), MOST_LINES)
         if kept:
-            plots.append(Plot(f"counter_{name}", f"Counter: {name.replace('_', ' ')}",
-                              "Per frame, from the counting pass of the first process.", kept, draw, lambda p: 2.6))
+            plots.append(Plot(f"counter_{re.sub(r'[^A-Za-z0-9_.-]', '_', name)}", f"Counter: {name.replace('_', ' ')}",
+                              "Per frame, from the counting pass of the first process.", kept, draw, lambda p: 2.6,
+                              note="" if len(panels) <= MOST_PANELS else
+                              f"{len(kept)} of {len(panels)} panels are shown, evenly chosen."))
+        if len(plots) == MOST_COUNTER_PLOTS:
+            break
     return plots
 
 
@@ -182,7 +241,7 @@ def draw_orbit(ax, panel: Panel, styles) -> None:
     lowest, highest = np.inf, 0.0
     for r in panel.results:
         style = styles[id(r)]
-        matrices = r.orbit_matrices()
+        matrices = r.orbit_matrices
         if matrices is None:  # timed pacing: every frame has its own pose
             rows = r.completed[0].headline.sort_values("phase")
             phases, middle = rows.phase.to_numpy(), rows.frame_ms.to_numpy()
@@ -212,23 +271,36 @@ def draw_error_time(ax, panel: Panel, styles) -> None:
     _finish(ax, ax.get_xlabel(), "lowest PSNR, dB")
 
 
+def _draw_named_error(name: str, label: str):
+    def draw(ax, panel: Panel, styles) -> None:
+        _scatter(ax, panel, styles, lambda r: r.errors[name], higher_is_better=name == "ssim")
+        _finish(ax, ax.get_xlabel(), label)
+    return draw
+
+
 def draw_depth_time(ax, panel: Panel, styles) -> None:
-    _scatter(ax, panel, styles, lambda r: r.errors["depth_p995_voxels"])
+    _scatter(ax, panel, styles, lambda r: r.errors["depth_p995_voxels"], higher_is_better=False)
     values = [r.errors["depth_p995_voxels"] for r in panel.results]
-    if max(values) > _LOG_FROM_RATIO * min(values):
+    if min(values) > 0 and max(values) > _LOG_FROM_RATIO * min(values):
         ax.set_yscale("log")
         _plain_log_ticks(ax.yaxis)
     else:
-        ax.set_ylim(0, 1.15 * max(values))
+        ax.set_ylim(0, 1.15 * max(values) or 1.0)
     _finish(ax, ax.get_xlabel(), "depth error p99.5, voxels")
 
 
-def _scatter(ax, panel: Panel, styles, y_of) -> None:
+def _scatter(ax, panel: Panel, styles, y_of, higher_is_better: bool = True) -> None:
+    named = len(panel.results) <= _MOST_NAMED
     for technique in dict.fromkeys(r.technique for r in panel.results):
         mine = sorted((r for r in panel.results if r.technique == technique), key=lambda r: r.statistics["mean_ms"])
-        ax.plot([r.statistics["mean_ms"] for r in mine], [y_of(r) for r in mine], lw=0.8, zorder=1,
-                color=styles[id(mine[0])].color, alpha=0.6)
-    for r in panel.results:
+        joined = mine if named else _unbeaten(mine, y_of, higher_is_better)
+        style = styles[id(next(r for r in panel.results if r.technique == technique))]
+        ax.plot([r.statistics["mean_ms"] for r in joined], [y_of(r) for r in joined], lw=0.8, zorder=1,
+                color=style.color, alpha=0.6)
+        if not named:
+            ax.plot([r.statistics["mean_ms"] for r in mine], [y_of(r) for r in mine], ls="", marker=style.marker, ms=4,
+                    mew=0, color=style.color, alpha=0.6, label=f"{technique}, {len(mine)} points", zorder=3)
+    for r in panel.results if named else ():
         style = styles[id(r)]
         ax.plot(r.statistics["mean_ms"], y_of(r), marker=style.marker, ms=7, ls="", mec=GROUND, mew=0.7,
                 color=style.color, label=label_text(r, panel.axes), zorder=3)
@@ -242,6 +314,15 @@ def _scatter(ax, panel: Panel, styles, y_of) -> None:
     ax.set_xlabel("mean frame time, ms" + (" (logarithmic)" if logarithmic else ""))
     ax.margins(y=0.15)
     _legend(ax, panel)
+
+
+def _unbeaten(fastest_first: list[PointResult], y_of, higher_is_better: bool) -> list[PointResult]:
+    """Those that have a better error than all that are faster."""
+    kept, sign = [], 1 if higher_is_better else -1
+    for r in fastest_first:
+        if not kept or sign * y_of(r) > sign * y_of(kept[-1]):
+            kept.append(r)
+    return kept
 
 
 def draw_passes(ax, panel: Panel, styles) -> None:
@@ -317,10 +398,10 @@ def _legend(ax, panel: Panel, columns: int = 1) -> None:
     handles, names = ax.get_legend_handles_labels()
     if not handles:
         return
+    names = [name if len(name) <= _LONGEST_NAME else name[:_LONGEST_NAME - 1] + "…" for name in names]
     columns = columns if columns > 1 else (2 if len(names) > 3 and max(map(len, names)) < 27 else 1)
-    legend = ax.legend(handles, names, loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncol=columns, frameon=False,
-                       fontsize=8, labelcolor=TEXT, handlelength=2.6, borderaxespad=0.2, columnspacing=1.2)
-    legend.set_in_layout(True)
+    ax.legend(handles, names, loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncol=columns, frameon=False,
+              fontsize=8, labelcolor=TEXT, handlelength=2.6, borderaxespad=0.2, columnspacing=1.2)
 
 
 def _finish(ax, x: str, y: str, grid: str = "both") -> None:
@@ -344,22 +425,34 @@ def figure_of(plot: Plot, panels: list[Panel], styles, titles: bool = True) -> F
     columns = min(2, len(panels))
     rows = [panels[i : i + columns] for i in range(0, len(panels), columns)]
     # Legends stand above the axes and need room of their own.
-    heights = [max(plot.height(p) + (0 if plot.name == "mean" else 0.16 * min(len(p.results), 12)) for p in row)
-               + (0.3 if titles else 0) for row in rows]
-    figure = Figure(figsize=(4.9 * columns, sum(heights)), layout="constrained")
+    names = 0 if plot.name == "mean" else 0.16
+    heights = [max(plot.height(p) + names * min(len(p.results), _MOST_NAMED) for p in row) + (0.3 if titles else 0)
+               for row in rows]
+    with matplotlib.rc_context({"text.parse_math": False}):  # names may hold dollar signs
+        return _drawn(plot, rows, heights, styles, titles)
+
+
+def _drawn(plot: Plot, rows: list[list[Panel]], heights: list[float], styles, titles: bool) -> Figure:
+    width, height = _PANEL_WIDTH * len(rows[0]), sum(heights)
+    figure = Figure(figsize=(width, height))
     figure.patch.set_facecolor(GROUND)
-    grid = figure.add_gridspec(len(rows), columns, height_ratios=heights)
     for i, row in enumerate(rows):
         slots = max(len(panel.results) for panel in row)
+        bottom = height - sum(heights[:i + 1])
         for j, panel in enumerate(row):
-            panel = replace(panel, slots=slots)
-            ax = figure.add_subplot(grid[i, j])
-            plot.draw(ax, panel, styles)
+            ax = figure.add_subplot()
+            plot.draw(ax, replace(panel, slots=slots), styles)
+            legend = ax.get_legend()
+            lines = 0 if legend is None else -(-len(legend.get_texts()) // legend._ncols)
+            above = _LINE * lines + 0.1
             if titles:
-                legend = ax.get_legend()
-                lines = 0 if legend is None else -(-len(legend.get_texts()) // legend._ncols)
-                ax.set_title(panel.title, loc="left", fontsize=10, fontweight="bold", color=TEXT,
-                             pad=6 + 14 * lines)
+                title = f"{panel.title}\n{panel.note}" if panel.note else panel.title
+                ax.set_title(title, loc="left", fontsize=10, fontweight="bold", color=TEXT, pad=72 * above)
+                above += 0.2 * (1 + title.count("\n")) + 0.05
+            # Placed by hand: matplotlib's layout engines would take most of the time of a report.
+            left, right, below = 0.12 if not len(ax.get_yticks()) else 0.75, 0.15, 0.5
+            ax.set_position([(j * _PANEL_WIDTH + left) / width, (bottom + below) / height,
+                             (_PANEL_WIDTH - left - right) / width, (heights[i] - above - below) / height])
     return figure
 
 
@@ -387,6 +480,5 @@ def write_plots(folder, results: list[PointResult]) -> list[str]:
     for plot in plots:
         figure = figure_of(plot, plot.panels, styles)
         (folder / f"{plot.name}.svg").write_bytes(svg_of(figure))
-        figure.set_layout_engine("none")  # it stays as it was laid out for the svg
         figure.savefig(folder / f"{plot.name}.png", dpi=150, metadata={"Software": None})
     return [plot.name for plot in plots]

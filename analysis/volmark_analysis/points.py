@@ -12,8 +12,8 @@ from .load import Experiment, Run
 from .statistics import POSES_FOR_LOW1, Ratio, mean_interval, paired_ratio, statistics_of, unpaired_ratio
 
 # Errors of a point are those of its worst captured picture.
-_WORST = {"psnr_db": min, "depth_mean_voxels": max, "depth_p995_voxels": max, "depth_max_voxels": max,
-          "missed_share": max, "spurious_share": max, "mse": max}
+_WORST = {"psnr_db": min, "ssim": min, "flip": max, "depth_mean_voxels": max,
+          "depth_p995_voxels": max, "depth_max_voxels": max, "missed_share": max, "spurious_share": max, "mse": max}
 
 
 @dataclass
@@ -61,8 +61,7 @@ class PointResult:
     @cached_property
     def processes(self) -> list[list[np.ndarray]]:
         """Per completed replicate, per headline orbit, its frame times."""
-        return [[orbit.frame_ms.to_numpy() for _, orbit in run.headline.groupby("orbit", sort=True)]
-                for run in self.completed]
+        return [[times for _, times in _by_orbit(run.headline)] for run in self.completed]
 
     @cached_property
     def statistics(self) -> dict[str, float]:
@@ -71,9 +70,10 @@ class PointResult:
             return {}
         statistics = statistics_of(np.concatenate([orbit for process in self.processes for orbit in process]))
         for column, name in (("host_ms", "host_median_ms"), ("cpu_ms", "cpu_median_ms"), ("gpu_ms", "gpu_median_ms")):
-            values = pd.concat([run.headline[column] for run in self.completed]).dropna()
+            values = np.concatenate([run.headline[column].to_numpy() for run in self.completed])
+            values = values[~np.isnan(values)]
             if len(values):
-                statistics[name] = float(values.median())
+                statistics[name] = float(np.median(values))
         return statistics
 
     @cached_property
@@ -92,7 +92,7 @@ class PointResult:
 
     @cached_property
     def poses(self) -> int:
-        return max((run.headline.phase.nunique() for run in self.completed), default=0)
+        return max((len(np.unique(run.headline.phase.to_numpy())) for run in self.completed), default=0)
 
     @property
     def frames_per_orbit(self) -> int:
@@ -108,7 +108,7 @@ class PointResult:
 
     @property
     def disturbed_frames(self) -> int:
-        return int(sum((~run.headline.disturbed.isin(["", "0"])).sum() for run in self.completed))
+        return sum(cause not in ("", "0") for run in self.completed for cause in run.headline.disturbed.to_numpy())
 
     @property
     def stamps_ratio(self) -> float | None:
@@ -150,14 +150,16 @@ class PointResult:
     @cached_property
     def pass_ms(self) -> dict[str, float]:
         """Mean time of each pass, from the breakdown orbits."""
-        frames = [r.frames[r.frames.orbit_kind == "breakdown"] for r in self.completed]
-        frames = [f for f in frames if len(f)]
-        if not frames:
-            return {}
-        rows = pd.concat(frames)
+        times: dict[str, list[np.ndarray]] = {}
+        for run in self.completed:
+            breakdown = run.frames.orbit_kind.to_numpy() == "breakdown"
+            for column in run.frames.columns if breakdown.any() else ():
+                if column.startswith("pass."):
+                    times.setdefault(column[len("pass."):], []).append(run.frames[column].to_numpy()[breakdown])
+        frames = max((sum(map(len, parts)) for parts in times.values()), default=0)
         # A pass that a frame does not have took no time in it.
-        return {c[len("pass."):]: float(rows[c].fillna(0).mean())
-                for c in rows.columns if c.startswith("pass.") and rows[c].notna().any()}
+        return {name: float(np.nansum(np.concatenate(parts)) / frames) for name, parts in times.items()
+                if not all(np.isnan(part).all() for part in parts)}
 
     @property
     def failed_checks(self) -> list[dict]:
@@ -173,28 +175,35 @@ class PointResult:
         run = self.any_run
         return str(run.technique.get("history", "")) if run else ""
 
+    @cached_property
     def orbit_matrices(self) -> list[np.ndarray] | None:
         """Per process: orbits x poses. None if poses differ between orbits (timed pacing)."""
-        matrices, phases = [], None
+        matrices = []
         for run in self.completed:
-            rows = run.headline.sort_values(["orbit", "frame"])
-            for _, orbit in rows.groupby("orbit"):
-                if phases is None:
-                    phases = orbit.phase.to_numpy()
-                if len(orbit) != len(phases) or not np.allclose(orbit.phase, phases, atol=1e-6):
+            orbits = _by_orbit(run.headline)
+            for phases, _ in orbits:
+                if len(phases) != len(self.phases) or not np.allclose(phases, self.phases, atol=1e-6):
                     return None
-            matrices.append(rows.frame_ms.to_numpy().reshape(-1, len(phases)))
+            matrices.append(np.array([times for _, times in orbits]))
         return matrices
 
     @cached_property
     def phases(self) -> np.ndarray:
-        rows = self.completed[0].headline
-        return rows[rows.orbit == rows.orbit.min()].sort_values("frame").phase.to_numpy()
+        """Of the first orbit's frames."""
+        return _by_orbit(self.completed[0].headline)[0][0]
+
+
+def _by_orbit(rows: pd.DataFrame) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Phases and times of each orbit's frames, in order."""
+    orbits, frames = rows.orbit.to_numpy(), rows.frame.to_numpy()
+    order = np.lexsort((frames, orbits))
+    starts = np.flatnonzero(np.diff(orbits[order])) + 1
+    return list(zip(np.split(rows.phase.to_numpy()[order], starts), np.split(rows.frame_ms.to_numpy()[order], starts)))
 
 
 def ratio_of(a: PointResult, b: PointResult) -> Ratio:
     """Time of `a` over time of `b`; both must have completed. Paired by pose where both have the same poses."""
-    times_a, times_b = a.orbit_matrices(), b.orbit_matrices()
+    times_a, times_b = a.orbit_matrices, b.orbit_matrices
     if times_a and times_b and len(a.phases) == len(b.phases) and np.allclose(a.phases, b.phases, atol=1e-6):
         same = [r.replicate for r in a.completed] == [r.replicate for r in b.completed]
         return paired_ratio(times_a, times_b, same_processes=same)

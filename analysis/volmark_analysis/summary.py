@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .columns import ABSENT, DAGGER, error_text, number_text
-from .comparisons import Comparison, technique_comparisons, verdict
+from .comparisons import Comparison, verdict
 from .load import Experiment
 from .plots import Panel, panels_of
 from .points import PointResult, label_text, varying_axes
@@ -14,15 +14,17 @@ _MOST_PAIRS = 6
 _MOST_PANELS = 4
 
 
-def findings(results: list[PointResult]) -> tuple[list[str], list[str]]:
+def findings(results: list[PointResult], comparisons: list[Comparison]) -> tuple[list[str], list[str]]:
     """Plain sentences: what to read first, and what to fold away if there are many scenes."""
     done = [r for r in results if r.completed]
     if not done:
         return ["No run completed: there is nothing to compare."], []
-    first = _technique_findings(technique_comparisons(results))
+    first = _technique_findings(comparisons)
     panels = panels_of(results)
     by_panel = [_extremes(panel, len(panels) > 1) for panel in panels]
-    return (first, by_panel) if first and len(panels) > _MOST_PANELS else (first + by_panel, [])
+    if len(panels) <= _MOST_PANELS:
+        return first + by_panel, []
+    return (first, by_panel) if first else (by_panel[:_MOST_PANELS], by_panel[_MOST_PANELS:])
 
 
 def _technique_findings(comparisons: list[Comparison]) -> list[str]:

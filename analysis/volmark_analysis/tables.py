@@ -37,8 +37,8 @@ def results_table(experiment: Experiment, results: list[PointResult], low1: str 
     known = all_columns(results)
     labels = [name for name, column in known.items() if column.is_label]
     if columns is None:
-        names = labels + ["mean_ms", "psnr_db", "depth_p995_voxels", "missed_spurious", low1, "fps", "generation_ms",
-                          "memory_bytes"]
+        names = labels + ["mean_ms", "psnr_db", "ssim", "flip", "depth_p995_voxels", "missed_spurious", low1, "fps",
+                          "generation_ms", "memory_bytes"]
         chosen = [known[n] for n in names if n in labels + ["mean_ms", "psnr_db"] or _has_values(known[n], results)]
     else:
         chosen = [known[_known_name(n, known)] for n in columns]
@@ -122,6 +122,8 @@ def notes_of(results: list[PointResult], columns: list[Column]) -> list[str]:
         notes.append(f"{DAGGER} from fewer than {POSES_FOR_LOW1} distinct poses: not a reliable tail.")
     if "psnr_db" in names and any("psnr_db" in r.errors for r in done):
         notes.append("PSNR: lowest of the captured pictures against the reference.")
+    if names & {"ssim", "flip"}:
+        notes.append("SSIM (1: equal), FLIP (0: equal): worst captured picture.")
     if names & {"depth_p995_voxels", "missed_spurious"}:
         notes.append("Depth error, missed and spurious pixels: worst captured picture; shares of the reference's hits.")
     return notes
