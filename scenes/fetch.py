@@ -17,6 +17,8 @@ import argparse
 import contextlib
 import os
 import sys
+import tarfile
+import zlib
 from pathlib import Path
 
 from fetching import FetchError
@@ -88,11 +90,26 @@ def chunks_of(path):
             yield chunk
 
 
+def member_of(path, name):
+    """Bytes of one file in a tar archive."""
+    try:
+        with tarfile.open(path) as archive:
+            member = archive.extractfile(name)
+            if member:
+                return member.read()
+    except (tarfile.TarError, EOFError, zlib.error, KeyError):
+        pass
+    raise FetchError(f"{path}: there is no file {name} in it")
+
+
 def contents_of(scene, path):
     """Header, body in chunks, and length of the body that a file becomes."""
     if path.suffix == ".inv3":
         layout, voxels = read_inv3(path)
         return nrrd_header(scene.name, f"the Debian package {scene.package}", layout), [voxels], len(voxels)
+    if scene.package_member and path.name != scene.file:
+        content = member_of(path, scene.package_member)
+        return b"", [content], len(content)
     size = path.stat().st_size
     if path.name == scene.file or not scene.layout:
         return b"", chunks_of(path), size

@@ -53,7 +53,10 @@ void listScenes(const Places& places, const DataFolders& data) {
       const SceneDescription scene = readScene(file);
       const bool generated = std::holds_alternative<GeneratorSource>(scene.source);
       const bool here = generated || findVolumeFile(scene, data);
-      const std::string state = generated ? "generated" : here ? "here" : "missing: " + scene.fetchHint;
+      const std::string state = generated                 ? "generated"
+                                : here                    ? "here"
+                                : scene.fetchHint.empty() ? "missing"
+                                                          : "missing: " + scene.fetchHint;
       fmt::print("  {:<24} {} [{}]\n", scene.name, scene.title, state);
     } catch (const InputError& error) {
       fmt::print("  {:<24} unreadable: {}\n", file.stem().string(), error.what());

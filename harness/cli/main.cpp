@@ -18,6 +18,7 @@ constexpr const char* kFooter = R"(Start here:
   volmark list                                             techniques, scenes and configurations
   volmark describe iso_raymarch                            what it does, its parameters with ranges
   volmark render --scene marschner_lobb --technique iso_raymarch -o first.exr
+  volmark info scan.nii.gz                                 a volume's size, type, range and histogram
   volmark expand configs/quick/quick.json                  what a scenario would run, without running it
   volmark run configs/quick/quick.json                     run it; again: goes on where it was stopped
 
@@ -26,7 +27,7 @@ Exit codes: 0 all done; 1 at least one run failed; 2 bad input, nothing was run;
 
 Environment: VOLMARK_DATA (folders of volumes, ':'-separated), VOLMARK_TECHNIQUES (folders of modules),
 VOLMARK_SCENES (folder of scene files), VOLMARK_SHADERS (folders of live GLSL), VOLMARK_CACHE (default
-~/.cache/volmark).)";
+~/.cache/volmark), VOLMARK_VOLUME_CACHE_GIB (most decoded volumes to keep there, default 32, 0 none).)";
 
 extern "C" void requestInterrupt(int) {
   interruptRequested = true;
@@ -52,6 +53,7 @@ int parseAndRun(int argc, char** argv) {
   addRenderCommand(app, exitCode);
   addExpandCommand(app, exitCode);
   addValidateCommand(app, exitCode);
+  addInfoCommand(app, exitCode);
   addListCommand(app, exitCode);
   addDescribeCommand(app, exitCode);
   addDeviceCommand(app, exitCode);

@@ -105,7 +105,8 @@ int render(const RenderArguments& arguments) {
 void addRenderCommand(CLI::App& app, int& exitCode) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command = app.add_subcommand("render", "Draw one picture");
-  command->add_option("--volume", arguments->volume, "Volume file (.nrrd, .nhdr)");
+  command->add_option("--volume", arguments->volume,
+                      "Volume file (volmark info --help lists formats), or a folder with a DICOM series");
   command->add_option("--scene", arguments->scene, "Scene name or file, instead of --volume");
   command->add_option("--technique", arguments->technique, "Technique (volmark list)")->capture_default_str();
   command->add_option("--isovalue", arguments->isovalue, "Normalised isovalue; default: the scene's first")

@@ -104,15 +104,40 @@ RawSource parseRaw(const JsonValue& value) {
   return source;
 }
 
+SeriesSource parseSeries(const JsonValue& value) {
+  SeriesSource source;
+  for (const JsonValue& file : value.array())
+    source.files.push_back(file.text());
+  if (source.files.empty()) value.refuse("at least one file name");
+  return source;
+}
+
+MeshSource parseMesh(const JsonValue& value) {
+  JsonObject object(value);
+  MeshSource source;
+  source.file = object.at("file").text();
+  if (const auto voxels = object.find("voxels"))
+    source.settings.voxels = static_cast<int>(voxels->integer(16, kLargestGeneratedDimension));
+  if (const auto band = object.find("band_voxels"))
+    source.settings.bandVoxels = static_cast<int>(band->integer(3, 1000));
+  object.refuseOthers();
+  return source;
+}
+
 void parseVolume(const JsonValue& value, SceneDescription& scene) {
   JsonObject object(value);
   const auto file = object.find("file");
+  const auto files = object.find("files");
   const auto raw = object.find("raw");
+  const auto mesh = object.find("mesh");
   const auto generator = object.find("generator");
   object.refuseOthers();
-  if (int(file.has_value()) + int(raw.has_value()) + int(generator.has_value()) != 1)
-    value.refuse("exactly one of \"file\", \"raw\", \"generator\"");
+  const int given = int(file.has_value()) + int(files.has_value()) + int(raw.has_value()) + int(mesh.has_value()) +
+                    int(generator.has_value());
+  if (given != 1) value.refuse("exactly one of \"file\", \"files\", \"raw\", \"mesh\", \"generator\"");
   if (file) scene.source = FileSource{file->text()};
+  if (files) scene.source = parseSeries(*files);
+  if (mesh) scene.source = parseMesh(*mesh);
   if (raw) scene.source = parseRaw(*raw);
   if (generator) scene.source = parseGenerator(*generator);
 }
@@ -122,6 +147,7 @@ void parseSource(const JsonValue& value, SceneDescription& scene) {
   JsonObject object(value);
   const auto package = object.find("package");
   const auto packageFile = object.find("package_file");
+  const auto packageMember = object.find("package_member");
   const auto url = object.find("url");
   const auto raw = object.find("raw");
   const auto license = object.find("license");
@@ -140,6 +166,8 @@ void parseSource(const JsonValue& value, SceneDescription& scene) {
   }
   if (package.has_value() != packageFile.has_value()) value.refuse("\"package\" and \"package_file\", or neither");
   if (package) package->text();
+  if (packageMember && !package) packageMember->refuse("nothing without \"package\"");
+  if (packageMember) packageMember->text();
   if (packageFile && !packageFile->text().starts_with('/')) packageFile->refuse("an absolute path");
   if (package || url) scene.fetchHint = fmt::format("scenes/fetch.py {}", scene.name);
   if (sha512) {

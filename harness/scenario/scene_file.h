@@ -4,6 +4,7 @@
 #include "scenario/strict_json.h"
 #include "volmark/scene.h"
 #include "volume/generators/generator.h"
+#include "volume/mesh/voxelise.h"
 #include "volume/raw.h"
 
 #include <filesystem>
@@ -31,7 +32,16 @@ struct GeneratorSource {
   GeneratorSettings settings;
 };
 struct FileSource {
-  std::string file; ///< looked for beside the scene file, then in the data folders
+  std::string file; ///< looked for beside the scene file, then in the data folders; a folder is a DICOM series
+};
+/// One file per time step.
+struct SeriesSource {
+  std::vector<std::string> files; ///< in order; "*" in a name stands for several, in natural order
+};
+/// A closed triangle mesh, voxelised when it is opened.
+struct MeshSource {
+  std::string file;
+  MeshSettings settings;
 };
 struct RawSource {
   std::string file;
@@ -42,7 +52,7 @@ struct SceneDescription {
   std::string name;
   std::string title;
   std::filesystem::path path; ///< of the scene file; empty for a scene made from a bare volume file
-  std::variant<GeneratorSource, FileSource, RawSource> source;
+  std::variant<GeneratorSource, FileSource, SeriesSource, MeshSource, RawSource> source;
   std::string fetchHint;                   ///< how to get a missing file: "scenes/fetch.py cranium_ct", or empty
   std::string license;                     ///< empty if the scene file names none
   std::optional<Range> visualisationRange; ///< data's unit

@@ -1,5 +1,7 @@
 #include "scenario/scene_library.h"
 
+#include "volume/volume_file.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,8 +12,7 @@ namespace volmark {
 namespace {
 
 bool isPath(const std::string& name) {
-  const std::string extension = std::filesystem::path(name).extension().string();
-  return name.find('/') != std::string::npos || extension == ".json" || extension == ".nrrd" || extension == ".nhdr";
+  return name.find('/') != std::string::npos || name.ends_with(".json") || isVolumeFileName(name);
 }
 
 std::vector<std::string> scenesIn(const std::filesystem::path& folder) {
@@ -24,11 +25,11 @@ std::vector<std::string> scenesIn(const std::filesystem::path& folder) {
   return names;
 }
 
-/// Empty if there is no such file.
+/// Empty if there is no such file or folder.
 std::filesystem::path findPath(const std::filesystem::path& path, const std::filesystem::path& besides) {
   std::error_code code;
   for (const std::filesystem::path& candidate : {path, besides.parent_path() / path})
-    if (std::filesystem::is_regular_file(candidate, code)) return candidate;
+    if (std::filesystem::exists(candidate, code)) return candidate;
   return {};
 }
 

@@ -19,8 +19,8 @@ public:
     SceneDescription description;
   };
 
-  /// `name` is a name in the scenes folder, or (with a '/' or ending in .json, .nrrd or .nhdr) a path: from the
-  /// current folder, else from the folder of the file that says so. Throws InputError.
+  /// `name` is a name in the scenes folder, or (with a '/' or ending in .json or like a volume file) a path: from
+  /// the current folder, else from the folder of the file that says so. Throws InputError.
   const Entry& get(const JsonValue& name);
 
 private:

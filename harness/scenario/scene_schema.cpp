@@ -22,6 +22,20 @@ json object(json properties, const std::vector<std::string>& required) {
           {"additionalProperties", false}};
 }
 
+/// What must be known of any file without a header.
+json layoutSchema() {
+  json layout = object({{"dims", schemaOf("volume.generator.dims")},
+                        {"type", schemaOf("volume.generator.type")},
+                        {"spacing_mm", schemaOf("volume.generator.spacing_mm")}},
+                       {"dims", "type"});
+  // One voxel along an axis is a volume too, if it comes from a file.
+  layout["properties"]["dims"]["items"] = {{"type", "integer"}, {"minimum", 1}};
+  layout["properties"]["dims"]["description"] = "Voxels along x, y, z.";
+  layout["properties"]["type"]["description"] = "Scalar type.";
+  layout["properties"]["spacing_mm"]["description"] = "Distance of voxel centres.";
+  return layout;
+}
+
 /// One alternative for each generator, with its parameters.
 json generatorSchema() {
   json alternatives = json::array();
@@ -39,20 +53,6 @@ json generatorSchema() {
   return {{"oneOf", alternatives}};
 }
 
-/// What must be known of any file without a header.
-json layoutSchema() {
-  json layout = object({{"dims", schemaOf("volume.generator.dims")},
-                        {"type", schemaOf("volume.generator.type")},
-                        {"spacing_mm", schemaOf("volume.generator.spacing_mm")}},
-                       {"dims", "type"});
-  // One voxel along an axis is a volume too, if it comes from a file.
-  layout["properties"]["dims"]["items"] = {{"type", "integer"}, {"minimum", 1}};
-  layout["properties"]["dims"]["description"] = "Voxels along x, y, z.";
-  layout["properties"]["type"]["description"] = "Scalar type.";
-  layout["properties"]["spacing_mm"]["description"] = "Distance of voxel centres.";
-  return layout;
-}
-
 json volumeSchema() {
   const json text = {{"type", "string"}, {"minLength", 1}};
   json raw = layoutSchema();
@@ -61,14 +61,24 @@ json volumeSchema() {
   raw["properties"]["offset_bytes"] = {{"type", "integer"}, {"minimum", 0}};
   raw["properties"]["time_steps"] = {{"type", "integer"}, {"minimum", 1}};
   raw["required"].push_back("file");
+  const json files = {{"type", "array"},
+                      {"items", text},
+                      {"minItems", 1},
+                      {"description", "One file per time step; * stands for several, in natural order."}};
+  json mesh = object({{"file", text},
+                      {"voxels", {{"type", "integer"}, {"minimum", 16}, {"maximum", 4096}}},
+                      {"band_voxels", {{"type", "integer"}, {"minimum", 3}, {"maximum", 1000}}}},
+                     {"file"});
+  mesh["description"] = "Signed distance to a closed mesh (OFF), mm, positive inside: voxels along the longest side "
+                        "(default 256), clamped to band_voxels (default 16).";
   return {{"oneOf",
-           {object({{"file", text}}, {"file"}), object({{"raw", raw}}, {"raw"}),
-            object({{"generator", generatorSchema()}}, {"generator"})}}};
+           {object({{"file", text}}, {"file"}), object({{"files", files}}, {"files"}), object({{"raw", raw}}, {"raw"}),
+            object({{"mesh", mesh}}, {"mesh"}), object({{"generator", generatorSchema()}}, {"generator"})}}};
 }
 
 json sourceSchema() {
   json properties = json::object();
-  for (const char* key : {"package", "url", "license", "acknowledgement", "note"})
+  for (const char* key : {"package", "package_member", "url", "license", "acknowledgement", "note"})
     properties[key] = {{"type", "string"}, {"minLength", 1}};
   properties["package_file"] = {{"type", "string"}, {"pattern", "^/"}};
   properties["raw"] = layoutSchema();
@@ -77,6 +87,7 @@ json sourceSchema() {
   json schema = object(properties, {});
   schema["dependentRequired"] = {{"package", json::array({"package_file"})},
                                  {"package_file", json::array({"package"})},
+                                 {"package_member", json::array({"package"})},
                                  {"raw", json::array({"url"})}};
   schema["description"] = "Where the data comes from.";
   return schema;

@@ -138,23 +138,26 @@ glm::dvec3 Grid::toWorld(const glm::dvec3& voxel) const {
   return boxMinimum() + voxel * spacingMm;
 }
 
-Volume::Volume(std::string name, Grid grid, ScalarType type, std::vector<std::byte> bytes, int timeSteps)
-    : m_name(std::move(name)), m_grid(grid), m_type(type), m_timeSteps(timeSteps), m_bytes(std::move(bytes)) {
+Volume::Volume(std::string name, Grid grid, ScalarType type, SharedBytes shared, int timeSteps,
+               std::vector<std::string> notes)
+    : m_name(std::move(name)), m_grid(grid), m_type(type), m_timeSteps(timeSteps), m_bytes(std::move(shared)),
+      m_notes(std::move(notes)) {
+  const std::span<const std::byte> bytes = m_bytes.view();
   if (m_grid.dims.x < 1 || m_grid.dims.y < 1 || m_grid.dims.z < 1 || m_timeSteps < 1)
     throw InputError(fmt::format("{}: {} x {} x {} voxels, {} time steps: allowed are at least 1 of each", m_name,
                                  m_grid.dims.x, m_grid.dims.y, m_grid.dims.z, m_timeSteps));
   const std::size_t expected = m_grid.voxelCount() * sizeOf(m_type) * static_cast<std::size_t>(m_timeSteps);
-  if (m_bytes.size() != expected)
-    throw InputError(fmt::format("{}: {} bytes of voxels, expected {}", m_name, m_bytes.size(), expected));
-  if (m_type == ScalarType::float32) refuseNonFinite(m_name, m_grid, m_bytes);
-  m_dataRange = rangeOf(m_type, m_bytes);
-  m_identity = identityOf(m_grid, m_type, m_timeSteps, m_bytes);
+  if (bytes.size() != expected)
+    throw InputError(fmt::format("{}: {} bytes of voxels, expected {}", m_name, bytes.size(), expected));
+  if (m_type == ScalarType::float32) refuseNonFinite(m_name, m_grid, bytes);
+  m_dataRange = rangeOf(m_type, bytes);
+  m_identity = identityOf(m_grid, m_type, m_timeSteps, bytes);
 }
 
 std::span<const std::byte> Volume::voxels(int timeStep) const {
   assert(timeStep >= 0 && timeStep < m_timeSteps);
   const std::size_t bytes = m_grid.voxelCount() * sizeOf(m_type);
-  return std::span(m_bytes).subspan(bytes * static_cast<std::size_t>(timeStep), bytes);
+  return m_bytes.view().subspan(bytes * static_cast<std::size_t>(timeStep), bytes);
 }
 
 double Volume::value(int i, int j, int k, int timeStep) const {

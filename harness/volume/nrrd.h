@@ -11,13 +11,14 @@
 namespace volmark {
 
 /// Spacings are those of the header or the lengths of its space directions; an unknown one (NaN or absent) is
-/// 1. Directions and origin are not applied: world axes are the volume's own.
+/// 1. The origin is not used.
 struct NrrdHeader {
   Grid grid;
   ScalarType type = ScalarType::uint8;
   bool bigEndian = false;
   bool gzip = false;
   int timeSteps = 1;
+  glm::dmat3 directions{1.0};     ///< columns: unit vectors of the file's axes in LPS; NaN if a length is unknown
   std::filesystem::path dataFile; ///< the header's own file if attached
   std::uint64_t dataOffset = 0;   ///< where encoded voxels start in dataFile
   std::uint64_t skippedBytes = 0; ///< gzip only: decoded bytes before the first voxel
@@ -29,7 +30,8 @@ struct NrrdHeader {
 /// allocation of the declared size. Throws InputError.
 NrrdHeader readNrrdHeader(const std::filesystem::path& path, std::uint64_t maximumBytes);
 
-/// Throws InputError; a gzip stream that is longer or shorter than declared is refused.
+/// Turned to patient axes (orientation.h). Throws InputError; a gzip stream that is longer or shorter than
+/// declared is refused.
 std::shared_ptr<const Volume> loadNrrd(const std::filesystem::path& path, std::uint64_t maximumBytes);
 
 } // namespace volmark

@@ -2,22 +2,17 @@
 
 #include "volmark/error.h"
 #include "volmark/parameters.h"
-#include "volume/voxel_file.h"
+#include "volume/header_text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <fstream>
-#include <sstream>
 
 namespace volmark {
 
 namespace {
 
 constexpr std::size_t kMaximumHeaderBytes = 64 * 1024;
-constexpr std::size_t kMaximumQuoted = 60;
 
 /// All fields of NRRD0005; those with two spellings are here in the one with a space.
 const std::vector<std::string> kLegalFields = {"axis maxs",
@@ -62,69 +57,14 @@ std::string canonicalName(const std::string& name) {
   return name;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
-
-/// Text of a file as it may stand in a one-line message.
-std::string shown(std::string_view text) {
-  std::string result(text.substr(0, kMaximumQuoted));
-  for (char& c : result)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  return fmt::format("\"{}{}\"", result, text.size() > kMaximumQuoted ? "..." : "");
-}
-
 bool isMagic(std::string_view line) {
   return line.size() == 8 && line.starts_with("NRRD000") && line[7] >= '1' && line[7] <= '5';
 }
 
-std::string readStart(const std::filesystem::path& path) {
-  const std::uint64_t length = fileLength(path);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: can't be opened", path.string()));
-  std::string text(static_cast<std::size_t>(std::min<std::uint64_t>(length, kMaximumHeaderBytes)), '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!file) throw InputError(fmt::format("{}: can't be read", path.string()));
-  return text;
-}
-
 } // namespace
 
-std::string lowerCase(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
-
-std::optional<std::int64_t> parseInteger(std::string_view text, std::int64_t minimum, std::int64_t maximum) {
-  std::int64_t value = 0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return std::nullopt;
-  if (value < minimum || value > maximum) return std::nullopt;
-  return value;
-}
-
-std::optional<double> parseNumber(std::string_view text) {
-  double value = 0;
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-std::vector<std::string> splitWords(std::string_view text) {
-  std::istringstream stream{std::string(text)};
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;)
-    words.push_back(word);
-  return words;
-}
-
 NrrdFields::NrrdFields(const std::filesystem::path& path) : m_file(path.string()) {
-  const std::string text = readStart(path);
+  const std::string text = readFileStart(path, kMaximumHeaderBytes);
   for (std::size_t begin = 0, number = 1; begin < text.size(); ++number) {
     const std::size_t end = text.find('\n', begin);
     if (end == std::string::npos && text.size() == kMaximumHeaderBytes) break;

@@ -40,12 +40,4 @@ private:
   std::map<std::string, std::string> m_fields;
 };
 
-/// A whole number that fills the whole text and lies in the range; nothing otherwise.
-std::optional<std::int64_t> parseInteger(std::string_view text, std::int64_t minimum, std::int64_t maximum);
-/// A number, infinity or NaN that fills the whole text; nothing otherwise.
-std::optional<double> parseNumber(std::string_view text);
-/// Parts between white space.
-std::vector<std::string> splitWords(std::string_view text);
-std::string lowerCase(std::string_view text);
-
 } // namespace volmark

@@ -1,5 +1,7 @@
 // Meaning and checks of NRRD header fields.
 #include "volmark/error.h"
+#include "volume/gzip_reader.h"
+#include "volume/header_text.h"
 #include "volume/nrrd.h"
 #include "volume/nrrd_fields.h"
 #include "volume/voxel_file.h"
@@ -18,8 +20,6 @@ namespace {
 
 constexpr std::int64_t kMaximumSize = std::numeric_limits<int>::max();
 constexpr double kMaximumSpacing = 1e9;
-/// Deflate's best: 258 bytes from 2 bits.
-constexpr std::uint64_t kMaximumDeflateRatio = 1032;
 
 struct TypeSpelling {
   std::string_view name;
@@ -125,37 +125,50 @@ std::vector<std::string> splitDirections(const NrrdFields& fields, const std::st
   return result;
 }
 
-double lengthOfDirection(const NrrdFields& fields, std::string direction) {
+glm::dvec3 vectorOf(const NrrdFields& fields, std::string direction) {
   std::replace(direction.begin(), direction.end(), ',', ' ');
-  double squares = 0;
-  for (const std::string& word : splitWords(direction)) {
-    const auto component = parseNumber(word);
-    if (!component) fields.refuse("space directions", word, "numbers");
-    squares += *component * *component;
+  const std::vector<std::string> words = splitWords(direction);
+  if (words.size() != 3) fields.refuse("space directions", direction, "vectors of 3 numbers");
+  glm::dvec3 vector;
+  for (int i = 0; i < 3; ++i) {
+    const auto component = parseNumber(words[static_cast<std::size_t>(i)]);
+    if (!component) fields.refuse("space directions", words[static_cast<std::size_t>(i)], "numbers");
+    vector[i] = *component;
   }
-  return checkedSpacing(fields, "space directions", direction, std::sqrt(squares));
+  return vector;
 }
 
-void readSpaceDirections(const NrrdFields& fields, std::size_t dimension, Grid& grid) {
+/// What the space's own axes are in LPS; spaces without anatomy are taken as they are.
+glm::dvec3 signsOf(const NrrdFields& fields) {
+  const std::string space = lowerCase(fields.find("space").value_or(""));
+  if (space.starts_with("right-anterior-superior") || space == "ras" || space == "rast") return {-1, -1, 1};
+  if (space.starts_with("left-anterior-superior") || space == "las" || space == "last") return {1, -1, 1};
+  return {1, 1, 1};
+}
+
+void readSpaceDirections(const NrrdFields& fields, std::size_t dimension, NrrdHeader& header) {
   const std::string text = fields.at("space directions");
   const std::vector<std::string> directions = splitDirections(fields, text);
   if (directions.size() != dimension)
     fields.refuse("space directions", text, fmt::format("{} vectors, one per axis", dimension));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (lowerCase(directions[axis]) == "none")
-      fields.refuse("space directions", text, "\"none\" for the fourth axis only");
-    grid.spacingMm[static_cast<int>(axis)] = lengthOfDirection(fields, directions[axis]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string& direction = directions[static_cast<std::size_t>(axis)];
+    if (lowerCase(direction) == "none") fields.refuse("space directions", text, "\"none\" for the fourth axis only");
+    const glm::dvec3 vector = vectorOf(fields, direction);
+    const double length = glm::length(vector);
+    header.grid.spacingMm[axis] = checkedSpacing(fields, "space directions", direction, length);
+    header.directions[axis] = signsOf(fields) * vector / length;
   }
 }
 
-void readSpacing(const NrrdFields& fields, std::size_t dimension, Grid& grid) {
-  if (fields.find("space directions")) return readSpaceDirections(fields, dimension, grid);
+void readSpacing(const NrrdFields& fields, std::size_t dimension, NrrdHeader& header) {
+  if (fields.find("space directions")) return readSpaceDirections(fields, dimension, header);
   if (!fields.find("spacings")) return;
   const std::vector<std::string> words = fields.words("spacings", dimension);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto spacing = parseNumber(words[axis]);
     if (!spacing) fields.refuse("spacings", words[axis], "numbers");
-    grid.spacingMm[static_cast<int>(axis)] = checkedSpacing(fields, "spacings", words[axis], *spacing);
+    header.grid.spacingMm[static_cast<int>(axis)] = checkedSpacing(fields, "spacings", words[axis], *spacing);
   }
 }
 
@@ -243,7 +256,7 @@ NrrdHeader readNrrdHeader(const std::filesystem::path& path, std::uint64_t maxim
   header.bigEndian = isBigEndian(fields, header.type);
   refuseOtherKinds(fields, dimension);
   readSizes(fields, dimension, header);
-  readSpacing(fields, dimension, header.grid);
+  readSpacing(fields, dimension, header);
   checkedVoxelBytes(fields.file(), header.grid, header.type, header.timeSteps, maximumBytes);
   locateData(fields, path, header);
   checkLength(fields, header);

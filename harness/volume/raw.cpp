@@ -1,6 +1,7 @@
 #include "volume/raw.h"
 
 #include "volmark/error.h"
+#include "volume/mapped_file.h"
 #include "volume/voxel_file.h"
 
 #include <fmt/format.h>
@@ -15,10 +16,16 @@ std::shared_ptr<const Volume> loadRaw(const std::filesystem::path& path, const R
   if (description.offsetBytes > length || length - description.offsetBytes != bytes)
     throw InputError(fmt::format("{}: the file has {} bytes, expected {} bytes of voxels after {} skipped",
                                  path.string(), length, bytes, description.offsetBytes));
+  const auto volume = [&](SharedBytes voxels) {
+    return std::make_shared<const Volume>(path.filename().string(), description.grid, description.type,
+                                          std::move(voxels), description.timeSteps);
+  };
+  const bool usableAsIs =
+      isNativeOrder(description.type, description.bigEndian) && description.offsetBytes % sizeOf(description.type) == 0;
+  if (usableAsIs) return volume(mapFile(path, description.offsetBytes));
   std::vector<std::byte> voxels = readVoxels(path, description.offsetBytes, bytes);
   toNativeOrder(voxels, description.type, description.bigEndian);
-  return std::make_shared<const Volume>(path.filename().string(), description.grid, description.type, std::move(voxels),
-                                        description.timeSteps);
+  return volume(std::move(voxels));
 }
 
 } // namespace volmark

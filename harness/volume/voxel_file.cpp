@@ -59,9 +59,13 @@ std::vector<std::byte> readVoxels(const std::filesystem::path& path, std::uint64
   return voxels;
 }
 
+bool isNativeOrder(ScalarType type, bool bigEndian) {
+  return sizeOf(type) == 1 || bigEndian == (std::endian::native == std::endian::big);
+}
+
 void toNativeOrder(std::span<std::byte> voxels, ScalarType type, bool bigEndian) {
+  if (isNativeOrder(type, bigEndian)) return;
   const std::size_t size = sizeOf(type);
-  if (size == 1 || bigEndian == (std::endian::native == std::endian::big)) return;
   for (std::size_t i = 0; i + size <= voxels.size(); i += size)
     std::reverse(voxels.begin() + static_cast<std::ptrdiff_t>(i),
                  voxels.begin() + static_cast<std::ptrdiff_t>(i + size));

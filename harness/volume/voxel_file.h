@@ -26,6 +26,9 @@ std::vector<std::byte> allocateVoxels(const std::string& place, std::uint64_t co
 /// Bytes [offset, offset + count) of a file. Throws InputError if they can't be read.
 std::vector<std::byte> readVoxels(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t count);
 
+/// Whether scalars of this byte order can be used as they are.
+bool isNativeOrder(ScalarType type, bool bigEndian);
+
 /// Swaps the bytes of every scalar unless `bigEndian` is this machine's order.
 void toNativeOrder(std::span<std::byte> voxels, ScalarType type, bool bigEndian);
 

@@ -34,6 +34,7 @@ class Scene:
     layout: Layout  # of the file at url; None if that file is the volume's file itself
     package: str
     package_file: str  # absolute path
+    package_member: str  # of the package's file, if that is a tar archive; else ""
     license: str
     note: str
 
@@ -66,18 +67,20 @@ def layout_of(raw):
 def scene_of(name, document):
     volume, source = document["volume"], document.get("source", {})
     raw = volume.get("raw", {})
-    file = "" if "generator" in volume else plain_file_name(raw["file"] if raw else volume["file"])
+    file = "" if "generator" in volume else plain_file_name((raw or volume.get("mesh") or volume)["file"])
     package = source.get("package", "")
     return Scene(
         name=name,
         title=document["title"],
         file=file,
-        raw_offset=raw.get("offset_bytes", 0) if raw else -1,
+        # Of a mesh, all its text is checked.
+        raw_offset=raw.get("offset_bytes", 0) if raw else 0 if "mesh" in volume else -1,
         sha512=source.get("sha512", ""),
         url=source.get("url", ""),
         layout=layout_of(source.get("raw")),
         package=package,
         package_file=source["package_file"] if package else "",
+        package_member=source.get("package_member", ""),
         license=source.get("license", ""),
         note=source.get("note", ""),
     )

@@ -196,6 +196,34 @@ def test_packages_that_cannot_be_had_name_the_way_out(run, add_scene, archive, d
     assert is_empty(data)
 
 
+@pytest.fixture
+def mesh(tmp_path, add_scene):
+    """The scene `mesh`, whose text is one file in an archive that a package installs. Returns the text."""
+    text = b"OFF\n0 0 0\n"
+    with tarfile.open(tmp_path / "data.tar.gz", "w:gz") as archive:
+        member = tarfile.TarInfo("data/a.off")
+        member.size = len(text)
+        archive.addfile(member, io.BytesIO(text))
+    add_scene("mesh", {"mesh": {"file": "a.off"}}, package="some-package", package_file=str(tmp_path / "data.tar.gz"),
+              package_member="data/a.off", sha512=hashlib.sha512(text).hexdigest())
+    return text
+
+
+def test_a_file_in_a_packages_archive_is_taken_and_checked(run, mesh, data):
+    assert run("mesh")[0] == 0 and (data / "a.off").read_bytes() == mesh
+    (data / "a.off").write_bytes(mesh + b"#")
+    assert states(run)["mesh"] == "wrong"
+    assert run("mesh")[0] == 0 and (data / "a.off").read_bytes() == mesh
+
+
+def test_a_missing_or_cut_archive_is_refused(run, mesh, data, tmp_path):
+    whole = (tmp_path / "data.tar.gz").read_bytes()
+    for damaged in (whole[:20], b"no archive"):
+        (tmp_path / "data.tar.gz").write_bytes(damaged)
+        fails(run("mesh"), "data.tar.gz: there is no file data/a.off in it")
+        assert is_empty(data)
+
+
 # --- Folders ----------------------------------------------------------------------------------------------------
 
 

@@ -44,12 +44,32 @@ struct Range {
   double maximum = 1;
 };
 
+/// Bytes in memory or in a mapped file, for as long as a copy of this lives.
+class SharedBytes {
+public:
+  SharedBytes(std::vector<std::byte> bytes) {
+    auto owner = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
+    m_view = *owner;
+    m_owner = std::move(owner);
+  }
+  SharedBytes(std::shared_ptr<const void> owner, std::span<const std::byte> view)
+      : m_owner(std::move(owner)), m_view(view) {}
+
+  std::span<const std::byte> view() const { return m_view; }
+
+private:
+  std::shared_ptr<const void> m_owner;
+  std::span<const std::byte> m_view;
+};
+
 /// Immutable after construction, shared between threads. Voxels of float32 volumes are finite.
 class Volume {
 public:
   /// `bytes`: timeSteps * voxelCount * sizeOf(type) bytes. Scans for the range and, in float32 data, for NaN
-  /// and infinity. Throws InputError (prefixed with `name`) on a wrong size or a value that isn't finite.
-  Volume(std::string name, Grid grid, ScalarType type, std::vector<std::byte> bytes, int timeSteps = 1);
+  /// and infinity. `notes`: what whoever looks at the volume should know about how it was read, a sentence each.
+  /// Throws InputError (prefixed with `name`) on a wrong size or a value that isn't finite.
+  Volume(std::string name, Grid grid, ScalarType type, SharedBytes bytes, int timeSteps = 1,
+         std::vector<std::string> notes = {});
 
   const std::string& name() const { return m_name; }
   const Grid& grid() const { return m_grid; }
@@ -59,6 +79,7 @@ public:
   Range dataRange() const { return m_dataRange; }
   /// Hex XXH3-128 of type, dims, spacing, time steps and voxels: the data's identity in results.
   const std::string& identity() const { return m_identity; }
+  const std::vector<std::string>& notes() const { return m_notes; }
 
   /// One time step: voxelCount * sizeOf(type) bytes.
   std::span<const std::byte> voxels(int timeStep = 0) const;
@@ -70,7 +91,8 @@ private:
   Grid m_grid;
   ScalarType m_type;
   int m_timeSteps;
-  std::vector<std::byte> m_bytes;
+  SharedBytes m_bytes;
+  std::vector<std::string> m_notes;
   Range m_dataRange;
   std::string m_identity;
 };

@@ -13,6 +13,7 @@ endfunction()
 
 volmark_pytest(program.commands ${CMAKE_CURRENT_LIST_DIR}/test_commands.py)
 volmark_pytest(program.bad_input ${CMAKE_CURRENT_LIST_DIR}/test_bad_input.py)
+volmark_pytest(program.volumes ${CMAKE_CURRENT_LIST_DIR}/test_volumes.py)
 volmark_pytest(program.grid ${CMAKE_CURRENT_LIST_DIR}/test_grid.py)
 volmark_pytest(program.real_techniques ${CMAKE_CURRENT_LIST_DIR}/test_real_techniques.py)
 volmark_pytest(program.picture_errors ${CMAKE_CURRENT_LIST_DIR}/test_picture_errors.py)

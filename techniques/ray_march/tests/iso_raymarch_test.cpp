@@ -284,7 +284,9 @@ TEST(IsoRaymarch, CountingFramesHaveNormalsAndSteps) {
     }
     EXPECT_GT(hits, 500);
     EXPECT_EQ(steps, double(drawn.counters.at("samples")));
-    if (shading == ShadingModel::none) EXPECT_EQ(drawn.counters.at("gradients"), 0u);
+    if (shading == ShadingModel::none) {
+      EXPECT_EQ(drawn.counters.at("gradients"), 0u);
+    }
   }
 }
 
