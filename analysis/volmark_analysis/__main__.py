@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from . import comparisons, export, plots, report, tables
+from . import comparisons, export, microbenchmarks, plots, report, tables
 from .errors import InputError
 from .load import load_experiment
 from .points import point_results
@@ -20,6 +20,7 @@ _EPILOG = """examples:
   python3 -m volmark_analysis compare results/quick --a technique=iso_raymarch --b technique=iso_octree
   python3 -m volmark_analysis compare results/quick --a step=0.5 --b step=1.0
   python3 -m volmark_analysis export results/quick --format github-action-benchmark -o benchmark.json
+  python3 -m volmark_analysis bench new.json --old old.json
 
 DIR is an experiment folder: the one with experiment.json and runs/. Unusable input gives one line and exit code 2.
 The statistics are defined in harness/README.md, section 6, and at the end of every report."""
@@ -72,6 +73,11 @@ def _parser() -> argparse.ArgumentParser:
                   "presentmon: a CSV row per frame, with the columns that exist without a window.")
     sub.add_argument("--format", choices=tuple(export.WRITERS), required=True)
     sub.add_argument("-o", "--output", type=Path, metavar="FILE", help="where it goes (default: standard output)")
+    sub = commands.add_parser("bench", help="print microbenchmarks of volmark_bench, alone or beside older ones")
+    sub.add_argument("file", metavar="FILE", type=Path,
+                     help="volmark_bench --benchmark_out=FILE --benchmark_out_format=json --benchmark_repetitions=5")
+    sub.add_argument("--old", metavar="FILE", type=Path, help="the same of another build: adds the ratio of the medians")
+    sub.set_defaults(run=_bench)
     return parser
 
 
@@ -131,6 +137,11 @@ def _export(options) -> None:
         os.replace(staged, options.output)
     except OSError as error:
         raise InputError(f"{error.filename or options.output}: can't be written ({error.strerror or error})") from None
+
+
+def _bench(options) -> None:
+    old = microbenchmarks.read_benchmarks(options.old) if options.old else None
+    sys.stdout.write(microbenchmarks.to_markdown(microbenchmarks.read_benchmarks(options.file), old))
 
 
 if __name__ == "__main__":
