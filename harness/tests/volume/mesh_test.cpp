@@ -13,6 +13,12 @@ namespace {
 
 constexpr std::uint64_t kNoLimit = std::uint64_t(1) << 40;
 
+#ifdef VOLMARK_WITH_OPENVDB
+#define NEEDS_OPENVDB()
+#else
+#define NEEDS_OPENVDB() GTEST_SKIP() << "built without OpenVDB"
+#endif
+
 class Meshes : public VolumeFiles {
 protected:
   /// A tetrahedron, right-handed.
@@ -89,6 +95,7 @@ TEST_F(Meshes, BadFilesAreOneLine) {
 }
 
 TEST_F(Meshes, DistancesAreThoseOfASphere) {
+  NEEDS_OPENVDB();
   const double radius = 10;
   const MeshSettings settings{64, 16};
   const auto volume = loadMesh(sphere(radius, 100), settings, kNoLimit);
@@ -112,6 +119,7 @@ TEST_F(Meshes, DistancesAreThoseOfASphere) {
 }
 
 TEST_F(Meshes, TheLimitHolds) {
+  NEEDS_OPENVDB();
   expectInputError([&] { loadMesh(sphere(1, 8), {256, 16}, 1 << 20); }, "allowed: 1048576 bytes");
 }
 
