@@ -70,6 +70,10 @@ def test_time_series_by_pattern_in_natural_order(volmark):
     (volmark.folder / "steps.json").write_text(json.dumps(scene))
     document = json.loads(volmark("info", "./steps.json", "--json").stdout)
     assert document["time_steps"] == 3
+    for number in (2, 10):  # the first that does not fit is named
+        write_nrrd(volmark.folder / f"step_{number}.nrrd", number, sizes=(4, 5, 6))
+    said = refused(volmark, "info", "./steps.json")
+    assert "step_2.nrrd: its size" in said and "not those of step_1.nrrd" in said
     scene["volume"]["files"] = ["step_1.nrrd", "missing_*.nrrd"]
     (volmark.folder / "steps.json").write_text(json.dumps(scene))
     assert "there is no missing_*.nrrd" in refused(volmark, "info", "./steps.json")
