@@ -281,7 +281,9 @@ SceneDescription readScene(const std::filesystem::path& path) {
   return scene;
 }
 
-SceneDescription sceneForFile(const std::filesystem::path& volume) {
+SceneDescription sceneForFile(const std::filesystem::path& path) {
+  // "series/", as shells complete a folder's name.
+  const std::filesystem::path volume = path.has_filename() ? path : path.parent_path();
   SceneDescription scene;
   scene.name = volume.stem().string();
   scene.title = volume.filename().string();

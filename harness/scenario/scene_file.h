@@ -81,7 +81,7 @@ TransferFunction parseTransferFunction(const std::string& name, const JsonValue&
 Light parseLight(const JsonValue& value);
 
 /// A scene around a bare volume file: isovalue "middle" (normalised 0.5), transfer function "ramp".
-SceneDescription sceneForFile(const std::filesystem::path& volume);
+SceneDescription sceneForFile(const std::filesystem::path& path);
 
 /// Loads or generates the volume. Throws InputError: missing file (names the folders searched and the fetch
 /// hint), bad header, over `maximumBytes`.

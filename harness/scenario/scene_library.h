@@ -20,7 +20,8 @@ public:
   };
 
   /// `name` is a name in the scenes folder, or (with a '/' or ending in .json or like a volume file) a path: from
-  /// the current folder, else from the folder of the file that says so. Throws InputError.
+  /// the current folder, else from the folder of the file that says so. A folder there (a DICOM series) needs no '/'
+  /// where no scene has its name. Throws InputError.
   const Entry& get(const JsonValue& name);
 
 private:

@@ -61,7 +61,7 @@ std::shared_ptr<const Volume> loadNrrd(const std::filesystem::path& path, std::u
   if (usableAsIs)
     return std::make_shared<const Volume>(path.filename().string(), header.grid, header.type,
                                           mapFile(header.dataFile, header.dataOffset), header.timeSteps);
-  return cachedVolume({path, header.dataFile}, "nrrd", [&] { return decode(path, header); });
+  return cachedVolume({path, header.dataFile}, "nrrd", maximumBytes, [&] { return decode(path, header); });
 }
 
 } // namespace volmark

@@ -145,6 +145,7 @@ std::uint64_t volumeCacheBytes() {
 }
 
 std::shared_ptr<const Volume> cachedVolume(const std::vector<fs::path>& sources, const std::string& settings,
+                                           std::uint64_t maximumBytes,
                                            const std::function<std::shared_ptr<const Volume>()>& decode) {
   if (volumeCacheBytes() == 0) return decode();
   std::string key = settings;
@@ -153,6 +154,7 @@ std::shared_ptr<const Volume> cachedVolume(const std::vector<fs::path>& sources,
     settled = addStamp(source, key) && settled;
   const fs::path path = fileOf(key);
   if (auto found = find(path)) {
+    checkedVoxelBytes(found->name(), found->grid(), found->type(), found->timeSteps(), maximumBytes);
     std::error_code ignored;
     fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
     return found;

@@ -21,9 +21,10 @@ std::uint64_t volumeCacheBytes();
 /// them, else calls `decode` and stores its result, dropping the files used longest ago where the cache would be over
 /// its size. A cache that can't be written, or whose file is damaged (its voxels' hash differs), only costs time.
 /// Volumes under 1 MiB are not kept, nor are those of files that changed within the last two seconds: their next change
-/// could have the same time. Throws what `decode` throws.
+/// could have the same time. Throws what `decode` throws, and InputError over `maximumBytes`: what is kept was
+/// checked against the limit of another day.
 std::shared_ptr<const Volume> cachedVolume(const std::vector<std::filesystem::path>& sources,
-                                           const std::string& settings,
+                                           const std::string& settings, std::uint64_t maximumBytes,
                                            const std::function<std::shared_ptr<const Volume>()>& decode);
 
 } // namespace volmark

@@ -39,13 +39,6 @@ Loader loaderOf(const fs::path& path) {
   return nullptr;
 }
 
-/// What the cache holds was checked against the limit of another day.
-std::shared_ptr<const Volume> withinLimit(const fs::path& path, std::shared_ptr<const Volume> volume,
-                                          std::uint64_t maximumBytes) {
-  checkedVoxelBytes(path.string(), volume->grid(), volume->type(), volume->timeSteps(), maximumBytes);
-  return volume;
-}
-
 std::string endings() {
   std::vector<std::string_view> list;
   for (const auto& [ending, loader] : kLoaders)
@@ -58,7 +51,7 @@ std::string endings() {
 std::shared_ptr<const Volume> loadVolumeFile(const fs::path& path, std::uint64_t maximumBytes) {
   std::error_code missing;
   const Loader loader = fs::is_directory(path, missing) ? &loadDicomSeries : loaderOf(path);
-  if (loader) return withinLimit(path, loader(path, maximumBytes), maximumBytes);
+  if (loader) return loader(path, maximumBytes);
   throw InputError(fmt::format("{}: found a file name that ends in \"{}\", allowed: {}, a folder with a DICOM series, "
                                "or \"raw\" in a scene file that describes its voxels",
                                path.string(), path.extension().string(), endings()));

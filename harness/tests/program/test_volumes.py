@@ -92,4 +92,5 @@ def test_bad_files_are_one_line(volmark, itk, name, content, says):
 
 def test_a_folder_without_dicom_is_one_line(volmark, itk):
     (volmark.folder / "series").mkdir()
-    assert "there is no DICOM file" in refused(volmark, "info", "./series")
+    for name in ("./series", "series/", "series"):
+        assert "series: there is no DICOM file" in refused(volmark, "info", name)

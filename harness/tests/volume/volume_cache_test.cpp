@@ -46,7 +46,7 @@ TEST_F(VolumeCache, TheSecondReadingDoesNotDecode) {
   const fs::path path = writeVolume("a.nrrd", 7);
   int decoded = 0;
   const auto read = [&] {
-    return cachedVolume({path}, "test", [&] {
+    return cachedVolume({path}, "test", kNoLimit, [&] {
       ++decoded;
       return loadVolumeFile(path, kNoLimit);
     });

@@ -303,7 +303,7 @@ std::shared_ptr<const Volume> decodeSeries(const fs::path& folder, std::vector<S
 std::shared_ptr<const Volume> loadWithItk(const fs::path& path, ItkFormat format, std::uint64_t maximumBytes) {
   std::vector<fs::path> sources = {path};
   if (format == ItkFormat::metaImage) sources.push_back(metaImageDataFile(path));
-  return cachedVolume(sources, "itk", [&] { return decodeFile(path, format, maximumBytes); });
+  return cachedVolume(sources, "itk", maximumBytes, [&] { return decodeFile(path, format, maximumBytes); });
 }
 
 std::shared_ptr<const Volume> loadDicomSeries(const fs::path& folder, std::uint64_t maximumBytes) {
@@ -312,7 +312,7 @@ std::shared_ptr<const Volume> loadDicomSeries(const fs::path& folder, std::uint6
   std::vector<fs::path> sources;
   for (const Slice& slice : slices)
     sources.push_back(slice.path);
-  return cachedVolume(sources, "dicom series", [&] { return decodeSeries(folder, std::move(slices)); });
+  return cachedVolume(sources, "dicom series", maximumBytes, [&] { return decodeSeries(folder, std::move(slices)); });
 }
 
 } // namespace volmark

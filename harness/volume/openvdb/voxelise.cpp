@@ -86,7 +86,7 @@ std::shared_ptr<const Volume> voxelise(const std::filesystem::path& path, const 
 std::shared_ptr<const Volume> loadMesh(const std::filesystem::path& path, const MeshSettings& settings,
                                        std::uint64_t maximumBytes) {
   const std::string key = fmt::format("mesh, {} voxels, band {}", settings.voxels, settings.bandVoxels);
-  return cachedVolume({path}, key, [&] { return voxelise(path, settings, maximumBytes); });
+  return cachedVolume({path}, key, maximumBytes, [&] { return voxelise(path, settings, maximumBytes); });
 }
 
 } // namespace volmark
