@@ -21,6 +21,7 @@ constexpr const char* kFooter = R"(Start here:
   volmark info scan.nii.gz                                 a volume's size, type, range and histogram
   volmark expand configs/quick/quick.json                  what a scenario would run, without running it
   volmark run configs/quick/quick.json                     run it; again: goes on where it was stopped
+  volmark status results/quick                             how far it is
 
 Exit codes: 0 all done; 1 at least one run failed; 2 bad input, nothing was run; 3 this machine lacks something
 (device, driver, process); 130 interrupted, the same command goes on from there.
@@ -51,6 +52,9 @@ int parseAndRun(int argc, char** argv) {
   int exitCode = 0;
   addRunCommand(app, exitCode);
   addRenderCommand(app, exitCode);
+  addStatusCommand(app, exitCode);
+  addIndexCommand(app, exitCode);
+  addDrawCommand(app, exitCode);
   addExpandCommand(app, exitCode);
   addValidateCommand(app, exitCode);
   addInfoCommand(app, exitCode);

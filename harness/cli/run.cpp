@@ -1,5 +1,6 @@
 // volmark run
 #include "cli/commands.h"
+#include "scenario/point_list.h"
 #include "scenario/scenario.h"
 #include "worker/runner.h"
 
@@ -20,6 +21,9 @@ struct RunArguments {
   std::string device;
   bool validate = false;
   std::string retry;
+  std::string points;
+  std::vector<std::string> builds;
+  bool noIndex = false;
   double maximumGib = kDefaultMaximumGib;
 };
 
@@ -55,8 +59,14 @@ int run(const RunArguments& arguments) {
   options.validate = arguments.validate;
   options.retryFailed = arguments.retry == "failed";
   options.maximumBytes = bytesOfGib(arguments.maximumGib);
+  options.writeIndex = !arguments.noIndex;
+  for (const std::string& build : arguments.builds)
+    options.builds.push_back(parseBuild(build));
+  Scenario expanded = readScenario(scenario, catalogue);
+  if (!arguments.points.empty())
+    options.points = parsePointList(arguments.points, static_cast<int>(expanded.points.size()), "--points");
   Progress progress(stderr);
-  const RunnerResult result = runScenario(readScenario(scenario, catalogue), catalogue, options, progress);
+  const RunnerResult result = runScenario(std::move(expanded), catalogue, options, progress);
   printSummary(result);
   return exitCodeOf(result);
 }
@@ -71,12 +81,19 @@ void addRunCommand(CLI::App& app, int& exitCode) {
   command->add_option("--set", arguments->assignments, "Change a setting of every point: key.path=value")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--points", arguments->points, "Only these points of volmark expand, as in 3,7-12");
+  command
+      ->add_option("--build", arguments->builds,
+                   "NAME=PROGRAM, more than once: every point is run by each of these builds of volmark, interleaved")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--results", arguments->results, "Folder of experiments")->capture_default_str();
   command->add_option("--data", arguments->data, "Folder with volumes, before VOLMARK_DATA and scenes/data");
   command->add_option("--device", arguments->device, "Index or part of the name (volmark device)");
   command->add_flag("--validate", arguments->validate, "Vulkan validation layers; any message fails a run's check");
   command->add_option("--retry", arguments->retry, "failed: run again what did not complete")
       ->check(CLI::IsMember({"failed"}));
+  command->add_flag("--no-index", arguments->noIndex, "Leave index.csv alone (volmark index writes it)");
   command->add_option("--max-volume-gib", arguments->maximumGib, "Largest volume to load")->capture_default_str();
   command->callback([arguments, &exitCode] { exitCode = run(*arguments); });
 }

@@ -55,6 +55,7 @@ int expand(const ScenarioArguments& arguments) {
     nlohmann::ordered_json line{{"index", point.index}};
     for (const Label& label : point.labels)
       line["labels"][label.axis] = label.value;
+    line["group"] = point.group;
     line["config"] = point.config;
     fmt::print("{}\n", line.dump());
     const int replicates = point.settings.measure.replicates;

@@ -12,10 +12,12 @@
 
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <ctime>
 #include <fcntl.h>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -62,26 +64,58 @@ bool overwrite(int file, const std::string& text) {
          futimens(file, nullptr) == 0;
 }
 
+// Tells processes of one pid apart: in ticks since the machine started. Empty if there is no such process.
+std::string startOfProcess(pid_t pid) {
+  std::ifstream file(fmt::format("/proc/{}/stat", pid));
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  // "pid (name) state ...": the name may hold anything; the start is field 22, the 20th behind it.
+  const auto name = text.rfind(')');
+  if (name == std::string::npos) return "";
+  std::istringstream fields(text.substr(name + 1));
+  std::string field;
+  for (int i = 0; i < 20; ++i)
+    fields >> field;
+  return field;
+}
+
+// Containers of one host name may number their processes apart.
+std::string pidNamespace() {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/ns/pid", error).string();
+}
+
 std::string claimText() {
-  nlohmann::ordered_json document{
-      {"format", "volmark.claim"}, {"version", 1}, {"host", hostName()}, {"pid", getpid()}, {"started", utcNow()}};
+  nlohmann::ordered_json document{{"format", "volmark.claim"}, {"version", 1},
+                                  {"host", hostName()},        {"pid_namespace", pidNamespace()},
+                                  {"pid", getpid()},           {"process_started", startOfProcess(getpid())},
+                                  {"started", utcNow()}};
   return document.dump() + "\n";
 }
 
-bool isGoneFromThisHost(const nlohmann::json& claim) {
-  if (!claim.is_object() || !claim.contains("host") || !claim.contains("pid")) return false;
-  if (claim["host"] != hostName() || !claim["pid"].is_number_integer()) return false;
-  const auto pid = claim["pid"].get<pid_t>();
-  return pid > 0 && kill(pid, 0) != 0 && errno == ESRCH;
+enum class Owner { lives, gone, unknown };
+
+// Only of processes of this host and namespace can this be told at once.
+Owner ownerOf(const nlohmann::json& claim) {
+  if (!claim.is_object()) return Owner::unknown;
+  const auto text = [&claim](const char* key) { return claim.contains(key) ? claim[key] : nlohmann::json(); };
+  if (text("host") != hostName() || text("pid_namespace") != pidNamespace()) return Owner::unknown;
+  if (!text("pid").is_number_integer()) return Owner::unknown;
+  const std::string started = startOfProcess(claim["pid"].get<pid_t>());
+  return !started.empty() && text("process_started") == started ? Owner::lives : Owner::gone;
 }
 
-// A file without readable text may be one that is being made right now: only its age counts.
-bool isAbandoned(int file) {
+std::string heartbeatOf(int file, const std::string& text) {
   struct stat facts {};
-  timespec now{};
-  if (fstat(file, &facts) != 0 || clock_gettime(CLOCK_REALTIME, &now) != 0) return false;
-  const double age = static_cast<double>(now.tv_sec - facts.st_mtim.tv_sec);
-  return age > kClaimLifetimeSeconds || isGoneFromThisHost(nlohmann::json::parse(readAll(file), nullptr, false));
+  if (fstat(file, &facts) != 0) return text;
+  return fmt::format("{}.{} {}", facts.st_mtim.tv_sec, facts.st_mtim.tv_nsec, text);
+}
+
+// A file without readable text may be one that is being made right now: it is watched like a foreign one.
+bool isAbandoned(const std::filesystem::path& path, int file, ClaimWatch& watch) {
+  const std::string text = readAll(file);
+  const Owner owner = ownerOf(nlohmann::json::parse(text, nullptr, false));
+  if (owner == Owner::unknown) return watch.isAbandoned(path, heartbeatOf(file, text));
+  return owner == Owner::gone;
 }
 
 [[noreturn]] void failToClaim(const std::filesystem::path& path, int error) {
@@ -109,7 +143,7 @@ bool Claim::beat() {
   return isMine(file.get()) && futimens(file.get(), nullptr) == 0;
 }
 
-std::unique_ptr<Claim> Claim::take(const std::filesystem::path& path) {
+std::unique_ptr<Claim> Claim::take(const std::filesystem::path& path, ClaimWatch& watch) {
   const std::string text = claimText();
   // Again whenever a claim disappears between two steps: its owner has released it.
   for (;;) {
@@ -129,10 +163,46 @@ std::unique_ptr<Claim> Claim::take(const std::filesystem::path& path) {
     if (existing.get() < 0 && errno == ENOENT) continue;
     if (existing.get() < 0) failToClaim(path, errno);
     if (!existing.stillAt(path)) continue;
-    if (!isAbandoned(existing.get())) return nullptr;
+    if (!isAbandoned(path, existing.get(), watch)) return nullptr;
     if (!overwrite(existing.get(), text)) failToClaim(path, errno);
+    watch.forget(path);
     return std::unique_ptr<Claim>(new Claim(path, text));
   }
+}
+
+bool ClaimWatch::isAbandoned(const std::filesystem::path& file, const std::string& state) {
+  const auto now = Clock::now();
+  const auto [found, isNew] = m_seen.emplace(file, Seen{state, now, false});
+  Seen& seen = found->second;
+  if (seen.state != state) seen = {state, now, true};
+  return !isNew && now - seen.since >= m_lifetime;
+}
+
+bool ClaimWatch::isUndecided() const {
+  const auto now = Clock::now();
+  for (const auto& [ignored, seen] : m_seen)
+    if (!seen.beats && now - seen.since < m_lifetime + m_lifetime / 10) return true;
+  return false;
+}
+
+ClaimFacts readClaim(const std::filesystem::path& path) {
+  ClaimFacts facts;
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return facts;
+  struct stat status {};
+  timespec now{};
+  if (fstat(file, &status) == 0 && clock_gettime(CLOCK_REALTIME, &now) == 0)
+    facts.heartbeatSeconds = static_cast<double>(now.tv_sec - status.st_mtim.tv_sec);
+  const auto claim = nlohmann::json::parse(readAll(file), nullptr, false);
+  close(file);
+  if (!claim.is_object()) return facts;
+  facts.host = claim.value("host", "");
+  facts.pid = claim.value("pid", 0);
+  const Owner owner = ownerOf(claim);
+  facts.active = owner == Owner::unknown
+                     ? facts.heartbeatSeconds < std::chrono::duration<double>(kClaimLifetime).count()
+                     : owner == Owner::lives;
+  return facts;
 }
 
 } // namespace volmark

@@ -65,7 +65,8 @@ nlohmann::ordered_json experimentDocument(const Scenario& scenario, const std::s
     points.push_back({{"index", point.index},
                       {"labels", labelsDocument(point.labels)},
                       {"block", point.block},
-                      {"group", point.group}});
+                      {"group", point.group},
+                      {"replicates", point.settings.measure.replicates}});
   return {{"format", "volmark.experiment"},
           {"version", kFormatVersion},
           {"name", scenario.name},
@@ -188,6 +189,13 @@ Experiment::Experiment(const fs::path& resultsFolder, const Scenario& scenario)
   folders.keep();
 }
 
+Experiment reopenExperiment(const fs::path& folder) {
+  const auto document = readJson(folder / "experiment.json").value_or(nlohmann::json::object());
+  fs::path path = fs::absolute(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path(); // "results/quick/"
+  return Experiment(path, document.value("axes", std::vector<std::string>()));
+}
+
 fs::path Experiment::runFolder(const RunIdentity& identity) const {
   return m_folder / "runs" / identity.run.substr(0, 2) / identity.run;
 }
@@ -204,7 +212,7 @@ std::optional<std::string> Experiment::statusOf(const RunIdentity& identity) con
 std::unique_ptr<Claim> Experiment::claim(const RunIdentity& identity) const {
   const fs::path folder = runFolder(identity);
   createFolders(folder.parent_path());
-  return Claim::take(folder.string() + ".claim");
+  return Claim::take(folder.string() + ".claim", m_watch);
 }
 
 void Experiment::releaseStaleClaim(const RunIdentity& identity) const {

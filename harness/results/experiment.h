@@ -20,7 +20,8 @@ public:
   /// version or another experiment; leaves nothing half-made.
   Experiment(const std::filesystem::path& resultsFolder, const Scenario& scenario);
   /// For workers: the folder of an experiment that the runner has opened; commits, but writes no index.
-  explicit Experiment(std::filesystem::path folder) : m_folder(std::move(folder)) {}
+  explicit Experiment(std::filesystem::path folder, std::vector<std::string> axes = {})
+      : m_folder(std::move(folder)), m_axes(std::move(axes)) {}
 
   const std::filesystem::path& folder() const { return m_folder; }
   std::filesystem::path runFolder(const RunIdentity& identity) const; ///< runs/<2 hex>/<hash>
@@ -30,6 +31,9 @@ public:
 
   /// Nothing if another live process has the run (see Claim). Throws DeviceError if it can't be written.
   std::unique_ptr<Claim> claim(const RunIdentity& identity) const;
+
+  /// Claims of other machines that claim() met and that may yet turn out to be abandoned.
+  bool watchesClaims() const { return m_watch.isUndecided(); }
 
   /// Removes a claim that a dead process left beside a run that is done.
   void releaseStaleClaim(const RunIdentity& identity) const;
@@ -55,6 +59,10 @@ public:
 private:
   std::filesystem::path m_folder;
   std::vector<std::string> m_axes;
+  mutable ClaimWatch m_watch; ///< remembers what it saw, so that an abandoned claim is known when it is seen again
 };
+
+/// An experiment that is there, with the axes of its experiment.json.
+Experiment reopenExperiment(const std::filesystem::path& folder);
 
 } // namespace volmark

@@ -67,6 +67,14 @@ struct RunCheck {
   std::string detail;
 };
 
+/// A turn of an orbit among interleaved runs: the `place`th of `of` to draw it.
+struct TurnRow {
+  OrbitKind orbitKind = OrbitKind::headline;
+  int orbit = 0;
+  int place = 0;
+  int of = 1;
+};
+
 enum class RunStatus { completed, failed, crashed, timedOut, unsupported, outOfMemory };
 RunStatus runStatusFromName(const std::string& name); ///< the inverse; `failed` for any other text
 std::string nameOf(RunStatus status); ///< "completed", "failed", "crashed", "timed_out", "unsupported", "out_of_memory"
@@ -79,6 +87,8 @@ struct RunRecord {
   std::vector<CounterRow> counters;
   std::vector<PictureRow> pictures;
   std::vector<GenerationPass> generation;
+  std::vector<TurnRow> turns; ///< of headline and breakdown orbits, in the order in which they were taken
+  double activeSeconds = 0;   ///< wall time of all turns: what the time limit and the hours left are about
   double prepareMs = 0;
   double firstFrameMs = 0;
   std::vector<gpu::MemoryItem> memory;

@@ -143,10 +143,21 @@ Json pictureDocument(const PictureRow& picture, const TechniqueInfo& info) {
           {"cumulative_ms", info.history == History::visible ? orNull(picture.cumulativeMs) : Json(nullptr)}};
 }
 
+Json turnsDocument(const std::vector<TurnRow>& turns) {
+  Json document = Json::array();
+  for (const TurnRow& turn : turns)
+    document.push_back({{"orbit_kind", turn.orbitKind == OrbitKind::headline ? "headline" : "breakdown"},
+                        {"orbit", turn.orbit},
+                        {"place", turn.place},
+                        {"of", turn.of}});
+  return document;
+}
+
 // What only a completed run has.
 void addMeasurements(Json& document, const RunRecord& record, const TechniqueInfo& info) {
   document["statistics"] = statisticsDocument(record.frames, info);
   document["generation"] = generationDocument(record.generation);
+  document["turns"] = turnsDocument(record.turns);
   document["prepare_ms"] = orNull(record.prepareMs);
   document["first_frame_ms"] = orNull(record.firstFrameMs);
   document["counters"] = countersDocument(record.counters, info);
@@ -198,6 +209,7 @@ nlohmann::ordered_json runDocument(const RunIdentity& identity, const Point& poi
                 {"labels", labelsDocument(point.labels)},
                 {"status", nameOf(record.status)},
                 {"reason", oneLine(record.reason)},
+                {"active_seconds", record.activeSeconds},
                 {"config", Json(point.config)},
                 {"technique", techniqueDocument(technique)}};
   if (record.status == RunStatus::completed) addMeasurements(document, record, technique.factory->info);

@@ -27,8 +27,9 @@ WorkerStart startOf(const PendingRun& run, const RunnerOptions& options, const E
                     const std::filesystem::path& staging) {
   WorkerStart start;
   start.config = run.point->config;
-  for (const auto& folder : options.techniqueFolders)
-    start.techniqueFolders.push_back(folder.string());
+  if (run.build->name().empty())
+    for (const auto& folder : options.techniqueFolders)
+      start.techniqueFolders.push_back(folder.string());
   start.scenesFolder = options.scenesFolder.string();
   for (const auto& folder : options.data.folders)
     start.dataFolders.push_back(folder.string());
@@ -54,7 +55,7 @@ Batch::Batch(const Experiment& experiment, const RunnerOptions& options, std::ve
   for (PendingRun& run : runs) {
     auto claim = experiment.claim(run.identity);
     if (!claim) {
-      ++m_elsewhere;
+      m_elsewhere.push_back(run);
       continue;
     }
     auto member = std::make_unique<Member>();
@@ -83,10 +84,16 @@ void Batch::work(const std::function<void(double, const std::string&)>& advance)
   m_turnsPlanned = double(m_members.size()) * (3 + orbits + breakdowns);
 
   for (Member* member : living()) {
+    const Build& build = *member->run.build;
+    if (!build.digestsOf(member->run.point->settings.technique)) {
+      end(*member, RunStatus::unsupported,
+          fmt::format("build \"{}\" has no technique \"{}\"", build.name(), member->run.point->settings.technique), {});
+      continue;
+    }
     const auto staging = m_experiment.stage(member->run.identity);
-    member->link =
-        std::make_unique<WorkerLink>(startOf(member->run, m_options, m_experiment, staging), staging / "log.txt");
-    take(*member, "prepare", 0);
+    member->link = std::make_unique<WorkerLink>(build.program());
+    member->link->start(startOf(member->run, m_options, m_experiment, staging));
+    take(*member, "prepare");
   }
   everyoneTakes("warm_up", 0, false);
   for (int orbit = 0; orbit < orbits; ++orbit)
@@ -94,7 +101,7 @@ void Batch::work(const std::function<void(double, const std::string&)>& advance)
   for (int orbit = 0; orbit < breakdowns; ++orbit)
     everyoneTakes("breakdown", orbit, true);
   for (Member* member : living()) {
-    if (take(*member, "finish", 0))
+    if (take(*member, "finish"))
       m_ended.push_back({&member->run, nameOf(RunStatus::completed), ""});
     else if (member->alive)
       abandon(*member);
@@ -112,14 +119,14 @@ void Batch::everyoneTakes(const std::string& turn, int orbit, bool shuffled) {
       std::swap(members[i - 1], members[bits % i]);
     }
   }
-  for (Member* member : members)
-    take(*member, turn, orbit);
+  for (std::size_t i = 0; i < members.size(); ++i)
+    take(*members[i], turn, {OrbitKind::headline, orbit, static_cast<int>(i), static_cast<int>(members.size())});
 }
 
-bool Batch::take(Member& member, const std::string& turn, int orbit) {
+bool Batch::take(Member& member, const std::string& turn, const TurnRow& place) {
   if (!member.alive || interruptRequested) return false;
   const PointSettings& settings = member.run.point->settings;
-  member.link->grant(turn, orbit);
+  member.link->grant(turn, place);
   const double beginMs = monotonicMs();
   for (;;) {
     const WorkerLink::Answer answer = member.link->wait(kPollMs);
@@ -135,6 +142,7 @@ bool Batch::take(Member& member, const std::string& turn, int orbit) {
       return true;
     }
     if (interruptRequested) return false;
+    if (answer.kind == Kind::failed || answer.kind == Kind::died) member.activeMs = activeMs;
     if (answer.kind == Kind::failed) {
       end(member, runStatusFromName(answer.message["failed"]), answer.message["reason"], answer.message["provenance"]);
       return false;
@@ -145,6 +153,7 @@ bool Batch::take(Member& member, const std::string& turn, int orbit) {
     }
     if (activeMs > 1000 * settings.measure.timeLimitSeconds) {
       member.link->kill();
+      member.activeMs = activeMs;
       end(member, RunStatus::timedOut,
           fmt::format("over the time limit of {} s in {} (measure.time_limit_seconds)",
                       settings.measure.timeLimitSeconds, turn),
@@ -165,8 +174,9 @@ void Batch::end(Member& member, RunStatus status, const std::string& reason, con
   RunRecord record;
   record.status = status;
   record.reason = reason;
+  record.activeSeconds = member.activeMs / 1000;
   record.provenance = known.is_object() ? known : provenance(nullptr);
-  m_experiment.commit(member.run.identity, *member.run.point, *member.run.technique, record);
+  m_experiment.commit(member.run.identity, *member.run.point, member.run.technique, record);
   m_ended.push_back({&member.run, nameOf(status), reason});
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "results/experiment.h"
+#include "worker/build.h"
 #include "worker/progress.h"
 #include "worker/runner.h"
 #include "worker/worker_link.h"
@@ -16,7 +17,8 @@ namespace volmark {
 /// A run that is to be done now.
 struct PendingRun {
   const Point* point;
-  const CatalogueEntry* technique;
+  const Build* build;
+  CatalogueEntry technique; ///< with the digest of the build's own module
   RunIdentity identity;
 };
 
@@ -30,7 +32,8 @@ public:
   /// interruptRequested is set: unfinished runs leave nothing. `advance` gets a share in [0,1] and a text.
   void work(const std::function<void(double, const std::string&)>& advance);
 
-  int elsewhere() const { return m_elsewhere; }
+  /// Runs that other processes have claimed.
+  const std::vector<PendingRun>& elsewhere() const { return m_elsewhere; }
   /// Status of each run of the batch that ended, in the order given.
   struct Ended {
     const PendingRun* run;
@@ -43,7 +46,7 @@ private:
   struct Member;
 
   void everyoneTakes(const std::string& turn, int orbit, bool shuffled);
-  bool take(Member& member, const std::string& turn, int orbit);
+  bool take(Member& member, const std::string& turn, const TurnRow& place = {});
   void end(Member& member, RunStatus status, const std::string& reason, const nlohmann::json& provenance);
   /// Interrupted: kills the worker and leaves nothing of its run.
   void abandon(Member& member);
@@ -57,7 +60,7 @@ private:
   std::uint64_t m_shuffles = 0;
   double m_turnsTaken = 0;
   double m_turnsPlanned = 1;
-  int m_elsewhere = 0;
+  std::vector<PendingRun> m_elsewhere;
 };
 
 } // namespace volmark

@@ -1,8 +1,10 @@
 // JSON lines between the runner and a worker process, over two pipes.
 //
-// runner to worker   {"start": {...}}                    once; see WorkerStart
-//                    {"turn": "prepare"|"warm_up"|"headline"|"breakdown"|"finish", "orbit": k}
-// worker to runner   {"done": "<turn>"}                  the turn is over, the worker waits
+// runner to worker   {"describe": 1}                     what the program is; nothing else before it or after
+//                    {"start": {...}}                    once; see WorkerStart
+//                    {"turn": "prepare"|"warm_up"|"headline"|"breakdown"|"finish", "orbit": k, "place": i, "of": n}
+// worker to runner   {"described": {"protocol": 1, "commit", "techniques": {name: {"module_digest", "build_digest"}}}}
+//                    {"done": "<turn>"}                  the turn is over, the worker waits
 //                    {"frames": n}                       still drawing; at most twice a second
 //                    {"failed": "<status>", "reason": "<one line>", "provenance": {...}}   the worker ends
 #pragma once
@@ -14,10 +16,13 @@
 
 namespace volmark {
 
+/// Runners and workers of different builds understand each other if this is equal.
+inline constexpr int kWorkerProtocol = 1;
+
 /// Everything a worker needs to know.
 struct WorkerStart {
-  nlohmann::json config; ///< resolved point
-  std::vector<std::string> techniqueFolders;
+  nlohmann::json config;                     ///< resolved point
+  std::vector<std::string> techniqueFolders; ///< empty: the worker's own
   std::string scenesFolder;
   std::vector<std::string> dataFolders;
   std::string device; ///< selector

@@ -3,10 +3,12 @@
 
 #include "results/experiment.h"
 #include "scenario/scenario.h"
+#include "worker/build.h"
 #include "worker/progress.h"
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,11 @@ struct RunnerOptions {
   bool validate = false;
   bool retryFailed = false;       ///< run again what ended otherwise than completed
   std::uint64_t maximumBytes = 0; ///< of one volume
+  /// Numbers in the scenario's expansion, sorted: run these alone. The experiment still lists all.
+  std::optional<std::vector<int>> points;
+  /// Every point is run by each of them, interleaved, under the label `build`; empty: by this program.
+  std::vector<BuildChoice> builds;
+  bool writeIndex = true;
 };
 
 struct RunnerResult {

@@ -82,7 +82,7 @@ void Session::submit(double phase, std::uint64_t index, StampMode mode, bool cou
   const Changes changes = m_previousPhase ? m_timeline.between(*m_previousPhase, phase) : Changes{};
   const FrameInputs inputs = m_timeline.at(phase);
 
-  m_unfinished.push_back({m_nextSlot, phase, monotonicMs()});
+  m_unfinished.push_back({m_nextSlot, phase, monotonicMs(), processCpuMs()});
   slot.begin(mode);
   m_technique->update(changes, inputs, slot.recorder());
   slot.updateDone();
@@ -99,6 +99,7 @@ CompletedFrame Session::complete() {
   m_unfinished.pop_front();
   CompletedFrame frame;
   frame.times = m_slots[oldest.slot]->finish();
+  m_waste.spend(monotonicMs() - oldest.startMs, processCpuMs() - oldest.startCpuMs);
   frame.endMs = monotonicMs();
   frame.phase = oldest.phase;
   frame.startMs = oldest.startMs;

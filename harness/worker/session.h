@@ -7,6 +7,7 @@
 #include "volmark/gpu/device.h"
 #include "volmark/gpu/target.h"
 #include "worker/frame_slot.h"
+#include "worker/waste.h"
 
 #include <cstdint>
 #include <deque>
@@ -76,6 +77,7 @@ private:
     std::size_t slot;
     double phase;
     double startMs;
+    double startCpuMs;
   };
 
   const PointSettings m_settings;
@@ -91,6 +93,7 @@ private:
   std::size_t m_nextSlot = 0;
   std::optional<double> m_previousPhase;
   std::uint64_t m_outputBytes = 0;
+  Waste m_waste;
 };
 
 } // namespace volmark

@@ -18,7 +18,7 @@ namespace volmark {
 namespace {
 
 /// In the child, between fork and exec: only async-signal-safe calls.
-[[noreturn]] void becomeWorker(pid_t parent, int readFd, int writeFd, int logFd) {
+[[noreturn]] void becomeWorker(const char* program, pid_t parent, int readFd, int writeFd) {
   ::setpgid(0, 0); // Ctrl-C on the terminal is the runner's business
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);
@@ -29,39 +29,34 @@ namespace {
   ::dup2(safeWrite, kWorkerWriteFd);
   const int null = ::open("/dev/null", O_RDONLY);
   ::dup2(null, STDIN_FILENO);
-  ::dup2(logFd, STDOUT_FILENO);
-  ::dup2(logFd, STDERR_FILENO);
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);
   ::close(safeRead);
   ::close(safeWrite);
-  char program[] = "volmark";
+  char name[] = "volmark";
   char command[] = "worker";
-  char* arguments[] = {program, command, nullptr};
-  ::execv("/proc/self/exe", arguments);
+  char* arguments[] = {name, command, nullptr};
+  ::execv(program, arguments);
   ::_exit(127);
 }
 
 } // namespace
 
-WorkerLink::WorkerLink(const WorkerStart& start, const std::filesystem::path& log) {
+WorkerLink::WorkerLink(const std::filesystem::path& program) {
   int toChild[2];
   int fromChild[2];
   if (::pipe2(toChild, O_CLOEXEC) != 0 || ::pipe2(fromChild, O_CLOEXEC) != 0)
     throw DeviceError(fmt::format("no pipe for a worker process: {}", std::strerror(errno)));
-  const int logFd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (logFd < 0) throw InputError(fmt::format("{}: can't be written: {}", log.string(), std::strerror(errno)));
 
   const pid_t parent = ::getpid();
   m_pid = ::fork();
   if (m_pid < 0) throw DeviceError(fmt::format("no process for a worker: {}", std::strerror(errno)));
-  if (m_pid == 0) becomeWorker(parent, toChild[0], fromChild[1], logFd);
+  if (m_pid == 0) becomeWorker(program.c_str(), parent, toChild[0], fromChild[1]);
 
-  ::close(logFd);
   ::close(toChild[0]);
   ::close(fromChild[1]);
   m_toChild = toChild[1];
   m_fromChild = fromChild[0];
   m_channel = std::make_unique<LineChannel>(m_fromChild, m_toChild);
-  m_channel->send({{"start", start}});
 }
 
 WorkerLink::~WorkerLink() {
@@ -70,8 +65,16 @@ WorkerLink::~WorkerLink() {
   ::close(m_fromChild);
 }
 
-void WorkerLink::grant(const std::string& turn, int orbit) {
-  m_channel->send({{"turn", turn}, {"orbit", orbit}});
+void WorkerLink::describe() {
+  m_channel->send({{"describe", kWorkerProtocol}});
+}
+
+void WorkerLink::start(const WorkerStart& start) {
+  m_channel->send({{"start", start}});
+}
+
+void WorkerLink::grant(const std::string& turn, const TurnRow& place) {
+  m_channel->send({{"turn", turn}, {"orbit", place.orbit}, {"place", place.place}, {"of", place.of}});
 }
 
 WorkerLink::Answer WorkerLink::wait(int timeoutMs) {
@@ -81,6 +84,7 @@ WorkerLink::Answer WorkerLink::wait(int timeoutMs) {
   case LineChannel::Result::closed: return {Answer::Kind::died, {}, reap()};
   case LineChannel::Result::message: break;
   }
+  if (message.contains("described")) return {Answer::Kind::described, message["described"], ""};
   if (message.contains("failed")) return {Answer::Kind::failed, message, ""};
   if (message.contains("done")) return {Answer::Kind::done, message, ""};
   return {Answer::Kind::frames, message, ""};

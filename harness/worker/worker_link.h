@@ -1,6 +1,7 @@
 // The runner's side of one worker process.
 #pragma once
 
+#include "results/records.h"
 #include "worker/messages.h"
 
 #include <filesystem>
@@ -12,19 +13,22 @@ namespace volmark {
 
 class WorkerLink {
 public:
-  /// Starts this program again as a worker; its output goes to `log`. The child dies with this process.
-  /// Throws DeviceError when no process can be made.
-  WorkerLink(const WorkerStart& start, const std::filesystem::path& log);
+  /// Starts a program of volmark as a worker. Its output goes where this process's goes until a run begins, and
+  /// then to the run's log. The child dies with this process. Throws DeviceError when no process can be made.
+  explicit WorkerLink(const std::filesystem::path& program);
   /// Kills the child if it still lives.
   ~WorkerLink();
   WorkerLink(const WorkerLink&) = delete;
   WorkerLink& operator=(const WorkerLink&) = delete;
 
-  void grant(const std::string& turn, int orbit = 0);
+  /// {"described": ...} follows.
+  void describe();
+  void start(const WorkerStart& start);
+  void grant(const std::string& turn, const TurnRow& place);
 
   struct Answer {
-    enum class Kind { done, frames, failed, died, nothing } kind = Kind::nothing;
-    nlohmann::json message; ///< of failed
+    enum class Kind { described, done, frames, failed, died, nothing } kind = Kind::nothing;
+    nlohmann::json message; ///< of described and failed
     std::string reason;     ///< of died: "signal 11 (Segmentation fault)" or "exit code 3"
   };
   /// Waits at most `timeoutMs`.

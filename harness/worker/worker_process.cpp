@@ -13,10 +13,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <fcntl.h>
 #include <memory>
 #include <new>
 #include <optional>
+#include <unistd.h>
 
 namespace volmark {
 
@@ -46,24 +50,39 @@ std::vector<fs::path> pathsOf(const std::vector<std::string>& texts) {
   return {texts.begin(), texts.end()};
 }
 
+std::vector<fs::path> modulesOf(const WorkerStart& start) {
+  return start.techniqueFolders.empty() ? techniqueFolders() : pathsOf(start.techniqueFolders);
+}
+
+/// Drivers print to both streams, and so does whatever kills the process.
+void printInto(const fs::path& log) {
+  const int file = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (file < 0) throw DeviceError(fmt::format("{}: can't be written: {}", log.string(), std::strerror(errno)));
+  ::dup2(file, STDOUT_FILENO);
+  ::dup2(file, STDERR_FILENO);
+  ::close(file);
+}
+
+nlohmann::json description() {
+  const TechniqueCatalogue catalogue(techniqueFolders());
+  nlohmann::json techniques = nlohmann::json::object();
+  for (const CatalogueEntry& entry : catalogue.entries())
+    techniques[entry.factory->info.name] = {{"module_digest", entry.moduleDigest},
+                                            {"build_digest", buildDigest(entry.moduleDigest)}};
+  return {{"protocol", kWorkerProtocol}, {"commit", programVersion().commit}, {"techniques", techniques}};
+}
+
 /// One run: its parts in the order of the turns.
 class Run {
 public:
   Run(const WorkerStart& start, LineChannel& runner)
-      : m_start(start), m_runner(runner), m_catalogue(pathsOf(start.techniqueFolders)),
-        m_point(pointOf(start, m_catalogue)), m_entry(m_catalogue.get(m_point.settings.technique)) {}
+      : m_start(start), m_runner(runner), m_catalogue(modulesOf(start)), m_point(pointOf(start, m_catalogue)),
+        m_entry(m_catalogue.get(m_point.settings.technique)) {}
 
-  void take(const std::string& turn, int orbit) {
-    if (turn == "prepare")
-      prepare();
-    else if (turn == "warm_up")
-      m_timed->warmUp();
-    else if (turn == "headline")
-      m_timed->orbit(OrbitKind::headline, orbit);
-    else if (turn == "breakdown")
-      breakdown(orbit);
-    else
-      finish();
+  void take(const std::string& turn, const TurnRow& place) {
+    m_turnBeginMs = monotonicMs();
+    act(turn, place);
+    m_activeMs += monotonicMs() - m_turnBeginMs;
   }
 
   nlohmann::json provenanceNow() {
@@ -71,6 +90,19 @@ public:
   }
 
 private:
+  void act(const std::string& turn, const TurnRow& place) {
+    if (turn == "prepare")
+      prepare();
+    else if (turn == "warm_up")
+      m_timed->warmUp();
+    else if (turn == "headline")
+      headline(place);
+    else if (turn == "breakdown")
+      breakdown(place);
+    else
+      finish();
+  }
+
   void tick() {
     ++m_frames;
     const double now = monotonicMs();
@@ -95,11 +127,19 @@ private:
     m_timed = std::make_unique<TimedPass>(*m_session, [this] { tick(); });
   }
 
+  void headline(const TurnRow& place) {
+    m_timed->orbit(OrbitKind::headline, place.orbit);
+    m_record.turns.push_back(place);
+  }
+
   /// Times of passes are taken only where stamps tell passes apart.
-  void breakdown(int orbit) {
+  void breakdown(TurnRow place) {
     keepTimedFrame();
     if (!m_stampsTrusted) testStamps();
-    if (*m_stampsTrusted) m_timed->orbit(OrbitKind::breakdown, orbit);
+    if (!*m_stampsTrusted) return;
+    m_timed->orbit(OrbitKind::breakdown, place.orbit);
+    place.orbitKind = OrbitKind::breakdown;
+    m_record.turns.push_back(place);
   }
 
   void testStamps() {
@@ -137,6 +177,7 @@ private:
     m_record.pictures = judgePictures(judgement, captured, m_record.frames);
     checkValidation();
     m_record.provenance = provenanceNow();
+    m_record.activeSeconds = (m_activeMs + monotonicMs() - m_turnBeginMs) / 1000;
     const Experiment experiment{fs::path(m_start.experimentFolder)};
     experiment.commit({m_start.pointHash, m_start.runHash, m_start.replicate}, m_point, m_entry, m_record);
   }
@@ -187,6 +228,8 @@ private:
   RunRecord m_record;
   int m_frames = 0;
   double m_lastTickMs = 0;
+  double m_activeMs = 0;
+  double m_turnBeginMs = 0;
 };
 
 std::string oneLine(std::string text) {
@@ -207,13 +250,19 @@ int serveTurns() {
   try {
     nlohmann::json message;
     while (runner.receive(message, -1) != LineChannel::Result::closed) {
+      if (message.contains("describe")) {
+        runner.send({{"described", description()}});
+        break;
+      }
       if (message.contains("start")) {
-        run = std::make_unique<Run>(message["start"].get<WorkerStart>(), runner);
+        const auto start = message["start"].get<WorkerStart>();
+        printInto(fs::path(start.stagingFolder) / "log.txt");
+        run = std::make_unique<Run>(start, runner);
         continue;
       }
       if (!message.contains("turn")) continue;
       const std::string turn = message["turn"];
-      run->take(turn, message.value("orbit", 0));
+      run->take(turn, {OrbitKind::headline, message["orbit"], message["place"], message["of"]});
       runner.send({{"done", turn}});
       if (turn == "finish") break;
     }
