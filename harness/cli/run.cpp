@@ -25,6 +25,7 @@ struct RunArguments {
   std::vector<std::string> builds;
   bool noIndex = false;
   double maximumGib = kDefaultMaximumGib;
+  double memoryGib = 0;
 };
 
 int exitCodeOf(const RunnerResult& result) {
@@ -60,6 +61,7 @@ int run(const RunArguments& arguments) {
   options.retryFailed = arguments.retry == "failed";
   options.maximumBytes = bytesOfGib(arguments.maximumGib);
   options.writeIndex = !arguments.noIndex;
+  if (arguments.memoryGib > 0) options.workerBytes = bytesOfGib(arguments.memoryGib);
   for (const std::string& build : arguments.builds)
     options.builds.push_back(parseBuild(build));
   Scenario expanded = readScenario(scenario, catalogue);
@@ -95,6 +97,10 @@ void addRunCommand(CLI::App& app, int& exitCode) {
       ->check(CLI::IsMember({"failed"}));
   command->add_flag("--no-index", arguments->noIndex, "Leave index.csv alone (volmark index writes it)");
   command->add_option("--max-volume-gib", arguments->maximumGib, "Largest volume to load")->capture_default_str();
+  command->add_option(
+      "--memory-gib", arguments->memoryGib,
+      "Most memory that interleaved workers use together; where it is too short for all of a group they "
+      "run one after the other (default: what the machine has available)");
   command->callback([arguments, &exitCode] { exitCode = run(*arguments); });
 }
 

@@ -1,7 +1,8 @@
 // volmark status, index: an experiment's folder without running anything.
+#include "results/status.h"
+
 #include "cli/commands.h"
 #include "results/experiment.h"
-#include "results/status.h"
 #include "worker/progress.h"
 
 #include <fmt/format.h>

@@ -92,6 +92,7 @@ nlohmann::json provenance(const gpu::DeviceFacts* device) {
           {"host", hostFacts()},
           {"environment", driverEnvironment()},
           {"device", deviceFacts},
+          {"process", getpid()},
           {"started", utcNow()}};
 }
 

@@ -23,8 +23,8 @@ ProgramVersion programVersion();
 /// program's files, later ones remember. Throws DeviceError if they can't be read.
 std::string buildDigest(const std::string& moduleDigest);
 
-/// {"program", "build", "libraries", "host", "environment", "device", "started"}: see harness/README.md, Results.
-/// `device` may be null. "started" is the time of the call.
+/// {"program", "build", "libraries", "host", "environment", "device", "process", "started"}: see harness/README.md,
+/// Results. `device` may be null. "started" is the time of the call.
 nlohmann::json provenance(const gpu::DeviceFacts* device);
 
 /// Short identity of a device for the run hash: name, driver and driver version; "host" without one.

@@ -26,8 +26,8 @@ struct ExperimentStatus {
   int completed = 0;
   int failed = 0; ///< failed, crashed, timed out or out of memory
   int unsupported = 0;
-  int running = 0; ///< claimed by a process that lives or, on another host, beats
-  int left = 0;    ///< neither done nor running
+  int running = 0;                   ///< claimed by a process that lives or, on another host, beats
+  int left = 0;                      ///< neither done nor running
   std::optional<double> secondsLeft; ///< of all that isn't done, for the processes that are active now, at least one
   std::vector<int> leftPoints;       ///< with runs that aren't done, running or not; sorted
   std::vector<ActiveProcess> active;

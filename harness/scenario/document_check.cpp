@@ -2,6 +2,7 @@
 
 #include "scenario/documents.h"
 #include "scenario/overrides.h"
+#include "scenario/selection.h"
 #include "volmark/error.h"
 
 #include <fmt/format.h>
@@ -94,6 +95,7 @@ void checkBlock(const JsonValue& value, bool isPatch) {
       if (const JsonValue axis = axes->member(name); !isRemoved(axis, isPatch)) checkAxis(axis, isPatch);
     }
   }
+  if (const auto exclude = object.find("exclude"); exclude && !isRemoved(*exclude, isPatch)) checkExclusions(*exclude);
   object.refuseOthers();
 }
 
@@ -154,6 +156,8 @@ void checkDocument(const JsonValue& document, DocumentKind kind) {
   checkText(object, "description", isPatch);
   if (const auto set = object.find("set"); set && !isRemoved(*set, isPatch)) readOverrides(*set);
   if (const auto limits = object.find("limits"); limits && !isRemoved(*limits, isPatch)) readLimits(*limits);
+  if (const auto sample = object.find("sample"); sample && !isRemoved(*sample, isPatch) && !isPatch)
+    readSample(*sample);
   if (const auto blocks = object.find("blocks"); blocks && !isRemoved(*blocks, isPatch)) checkBlocks(*blocks, isPatch);
   object.refuseOthers();
 }

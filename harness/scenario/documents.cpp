@@ -120,7 +120,8 @@ void mergeProfiles(const ScenarioOptions& options, const Ordered& file, Ordered&
 
 bool isOfDocument(const std::string& path) {
   const std::string first = path.substr(0, path.find('.'));
-  return first == "title" || first == "description" || first == "set" || first == "blocks" || first == "limits";
+  return first == "title" || first == "description" || first == "set" || first == "blocks" || first == "limits" ||
+         first == "sample";
 }
 
 Ordered nestedPatch(const std::string& path, Ordered value) {

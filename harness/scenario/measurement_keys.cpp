@@ -53,6 +53,14 @@ std::vector<PointKey> measurementKeys() {
       number(
           "measure.time_limit_seconds", [](auto& s) -> auto& { return s.measure.timeLimitSeconds; }, 1, 86400, "s",
           "A run that takes longer is ended."),
+      number(
+          "measure.memory_limit_gib", [](auto& s) -> auto& { return s.measure.memoryLimitGib; }, 0, 1 << 20, "GiB",
+          "A run whose process takes more private memory is ended; 0 is no limit."),
+      choice(
+          "measure.isolation", [](auto& s) -> auto& { return s.measure.isolation; },
+          std::vector<std::pair<std::string, MeasureSettings::Isolation>>{
+              {"run", MeasureSettings::Isolation::run}, {"volume", MeasureSettings::Isolation::volume}},
+          "run: a process for each run; volume: a process draws all runs of a volume until something goes wrong."),
       integer(
           "measure.interleave", [](auto& s) -> auto& { return s.measure.interleave; }, 1, 64,
           "Most worker processes alive at once."),

@@ -63,7 +63,10 @@ struct MeasureSettings {
   int framesInFlight = 1;
   std::uint64_t seed = 1;
   double timeLimitSeconds = 600; ///< of one run
+  double memoryLimitGib = 0;     ///< of one worker process, private memory; 0: none
   int interleave = 4;            ///< most workers alive at once
+  /// run: a process each. volume: a worker draws one run after the other as long as the volume stays the same.
+  enum class Isolation { run, volume } isolation = Isolation::run;
 };
 
 struct PictureSettings {

@@ -7,6 +7,16 @@
 
 namespace volmark {
 
+namespace {
+
+std::string pointerOf(const PointKey& key) {
+  std::string pointer = "/" + key.path;
+  std::replace(pointer.begin(), pointer.end(), '.', '/');
+  return pointer;
+}
+
+} // namespace
+
 nlohmann::json PointKey::defaultValue() const {
   return derivedDefault.empty() ? write(PointSettings{}) : nlohmann::json();
 }
@@ -36,9 +46,22 @@ nlohmann::json writePoint(const PointSettings& settings) {
   nlohmann::json config = nlohmann::json::object();
   for (const PointKey& key : pointKeys()) {
     if (key.applies && !key.applies(settings)) continue;
-    std::string pointer = "/" + key.path;
-    std::replace(pointer.begin(), pointer.end(), '.', '/');
-    config[nlohmann::json::json_pointer(pointer)] = key.write(settings);
+    config[nlohmann::json::json_pointer(pointerOf(key))] = key.write(settings);
+  }
+  return config;
+}
+
+nlohmann::json withoutDefaults(nlohmann::json config) {
+  for (const PointKey& key : pointKeys()) {
+    const nlohmann::json::json_pointer pointer(pointerOf(key));
+    const nlohmann::json defaultValue = key.defaultValue();
+    if (defaultValue.is_null() || !config.contains(pointer) || config[pointer] != defaultValue) continue;
+    nlohmann::json& parent = config[pointer.parent_pointer()];
+    parent.erase(pointer.back());
+    if (parent.empty() && !pointer.parent_pointer().empty()) {
+      const auto outer = pointer.parent_pointer();
+      config[outer.parent_pointer()].erase(outer.back());
+    }
   }
   return config;
 }

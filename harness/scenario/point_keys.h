@@ -42,6 +42,10 @@ const PointKey* findPointKey(const std::string& path);
 /// The canonical configuration: every key that applies, nested.
 nlohmann::json writePoint(const PointSettings& settings);
 
+/// The same configuration without what equals a default: reads to the same settings, also in a program that doesn't
+/// know every key.
+nlohmann::json withoutDefaults(nlohmann::json config);
+
 // Tables of the parts; joined by pointKeys().
 std::vector<PointKey> contentKeys();     ///< scene, volume, technique, isovalue, transfer function, shading, light
 std::vector<PointKey> viewKeys();        ///< resolution, stereo, camera, timeline

@@ -2,11 +2,13 @@
 
 #include "scenario/documents.h"
 #include "scenario/point_reading.h"
+#include "scenario/selection.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace volmark {
 
@@ -27,16 +29,12 @@ struct Axis {
   std::vector<AxisValue> values;
 };
 
-std::string labelOf(const nlohmann::json& value) {
-  return value.is_string() ? value.get<std::string>() : shortJson(value, 200);
-}
-
 AxisValue readAxisValue(const JsonValue& value, const std::string& path) {
   if (value.isObject() && value.json().contains("label"))
     return {value.member("label").text(), readOverrides(value.member("set"))};
   // Through the same reading as a set, so that an object stands for several paths; the place is the value's.
   const nlohmann::json set = {{path, value.json()}};
-  AxisValue result{labelOf(value.json()), readOverrides(JsonValue(set, value.file()))};
+  AxisValue result{labelOfValue(value.json()), readOverrides(JsonValue(set, value.file()))};
   for (auto& [ignored, given] : result.overrides)
     given.pointer = value.pointer();
   return result;
@@ -89,8 +87,13 @@ public:
     const std::size_t count = combinationsOf(axes, place);
     if (points.size() + count > kMostPoints)
       place.fail(fmt::format("found over {0} points, allowed: {0}", kMostPoints));
+    std::set<std::string> names;
+    for (const Axis& axis : axes)
+      names.insert(axis.name);
+    const Exclusions exclusions =
+        place.json().contains("exclude") ? Exclusions(place.member("exclude"), names) : Exclusions();
     for (std::size_t i = 0; i < count; ++i)
-      addPoint(common, axes, i, place, number);
+      addPoint(common, axes, i, exclusions, place, number);
   }
 
   std::vector<std::string> axisNames{"technique"};
@@ -98,11 +101,15 @@ public:
 
 private:
   /// `combination` counts with the last axis fastest.
-  void addPoint(Overrides overrides, const std::vector<Axis>& axes, std::size_t combination, const JsonValue& place,
-                int number) {
+  void addPoint(Overrides overrides, const std::vector<Axis>& axes, std::size_t combination,
+                const Exclusions& exclusions, const JsonValue& place, int number) {
     std::vector<const AxisValue*> chosen(axes.size());
     for (std::size_t i = axes.size(); i-- > 0; combination /= axes[i].values.size())
       chosen[i] = &axes[i].values[combination % axes[i].values.size()];
+    std::map<std::string, std::string> chosenLabels;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      chosenLabels[axes[i].name] = chosen[i]->label;
+    if (exclusions.leaveOut(chosenLabels)) return;
     for (const AxisValue* value : chosen)
       applyOverrides(value->overrides, overrides);
 
@@ -167,6 +174,8 @@ Scenario readScenario(const ScenarioOptions& options, const TechniqueCatalogue& 
   }
   scenario.axes = std::move(expansion.axisNames);
   scenario.points = std::move(expansion.points);
+  if (scenario.points.empty()) root.fail("no point is left: \"exclude\" leaves out every combination");
+  if (scenario.document.contains("sample")) keepSample(readSample(root.member("sample")), scenario.points);
   return scenario;
 }
 

@@ -82,6 +82,21 @@ json limitsSchema() {
   return closedObject({{"pixels", count}, {"voxels", count}, {"frames", count}});
 }
 
+json sampleSchema() {
+  json sample = closedObject({{"count", {{"type", "integer"}, {"minimum", 1}, {"maximum", 100000}}},
+                              {"seed", {{"type", "integer"}, {"minimum", 0}, {"maximum", 0xffffffff}}}});
+  sample["required"] = {"count"};
+  sample["description"] = "Random points of the grid instead of all.";
+  return sample;
+}
+
+json exclusionsSchema() {
+  const json entry = {{"type", "object"}, {"minProperties", 1}};
+  return {{"type", "array"},
+          {"items", entry},
+          {"description", "Combinations to leave out: values, or lists of values, by axis."}};
+}
+
 json axisSchema() {
   const json labelled = {
       {"type", "object"},
@@ -169,6 +184,7 @@ json scenarioSchema(const TechniqueCatalogue& techniques) {
   json set = setSchema();
   nameTechniques(techniques, set);
   json block = closedObject({{"set", {{"$ref", "#/$defs/set"}}},
+                             {"exclude", exclusionsSchema()},
                              {"axes", {{"type", "object"}, {"additionalProperties", {{"$ref", "#/$defs/axis"}}}}}});
   addTechniques(techniques, set, block);
 
@@ -179,6 +195,7 @@ json scenarioSchema(const TechniqueCatalogue& techniques) {
                                    {"description", {{"type", {"string", "null"}}}},
                                    {"set", orNull({{"$ref", "#/$defs/set"}})},
                                    {"blocks", {{"anyOf", {blocks, patchedBlocks, {{"type", "null"}}}}}},
+                                   {"sample", {{"type", {"object", "null"}}}},
                                    {"limits", orNull({{"$ref", "#/$defs/limits"}})}});
   json schema = closedObject({{"$schema", text},
                               {"volmark", {{"const", 1}, {"description", "Version of the format."}}},
@@ -187,6 +204,7 @@ json scenarioSchema(const TechniqueCatalogue& techniques) {
                               {"description", text},
                               {"set", {{"$ref", "#/$defs/set"}}},
                               {"blocks", blocks},
+                              {"sample", sampleSchema()},
                               {"limits", {{"$ref", "#/$defs/limits"}}},
                               {"profiles", {{"type", "object"}, {"additionalProperties", patch}}}});
   schema["$schema"] = kDraft;

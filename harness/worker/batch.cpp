@@ -2,6 +2,7 @@
 
 #include "measure/clocks.h"
 #include "results/provenance.h"
+#include "scenario/point_keys.h"
 #include "volmark/random.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,9 @@ struct Batch::Member {
 
 namespace {
 
+/// Beside what the largest worker took so far: others may grow later, in their reference pictures for one.
+constexpr std::uint64_t kSpareBytes = 256ull << 20;
+
 /// How often a waiting runner looks at signals, time limits and heartbeats.
 constexpr int kPollMs = 500;
 
@@ -27,6 +31,7 @@ WorkerStart startOf(const PendingRun& run, const RunnerOptions& options, const E
                     const std::filesystem::path& staging) {
   WorkerStart start;
   start.config = run.point->config;
+  start.settings = withoutDefaults(run.point->config);
   if (run.build->name().empty())
     for (const auto& folder : options.techniqueFolders)
       start.techniqueFolders.push_back(folder.string());
@@ -50,8 +55,8 @@ WorkerStart startOf(const PendingRun& run, const RunnerOptions& options, const E
 
 } // namespace
 
-Batch::Batch(const Experiment& experiment, const RunnerOptions& options, std::vector<PendingRun> runs)
-    : m_experiment(experiment), m_options(options) {
+Batch::Batch(const Experiment& experiment, const RunnerOptions& options, WorkerPool& pool, std::vector<PendingRun> runs)
+    : m_experiment(experiment), m_options(options), m_pool(pool) {
   for (PendingRun& run : runs) {
     auto claim = experiment.claim(run.identity);
     if (!claim) {
@@ -84,16 +89,13 @@ void Batch::work(const std::function<void(double, const std::string&)>& advance)
   m_turnsPlanned = double(m_members.size()) * (3 + orbits + breakdowns);
 
   for (Member* member : living()) {
-    const Build& build = *member->run.build;
-    if (!build.digestsOf(member->run.point->settings.technique)) {
-      end(*member, RunStatus::unsupported,
-          fmt::format("build \"{}\" has no technique \"{}\"", build.name(), member->run.point->settings.technique), {});
-      continue;
+    if (hasRoomForAnother()) {
+      begin(*member);
+    } else {
+      m_deferred.push_back(member->run);
+      member->claim.reset();
+      member->alive = false;
     }
-    const auto staging = m_experiment.stage(member->run.identity);
-    member->link = std::make_unique<WorkerLink>(build.program());
-    member->link->start(startOf(member->run, m_options, m_experiment, staging));
-    take(*member, "prepare");
   }
   everyoneTakes("warm_up", 0, false);
   for (int orbit = 0; orbit < orbits; ++orbit)
@@ -101,11 +103,44 @@ void Batch::work(const std::function<void(double, const std::string&)>& advance)
   for (int orbit = 0; orbit < breakdowns; ++orbit)
     everyoneTakes("breakdown", orbit, true);
   for (Member* member : living()) {
-    if (take(*member, "finish"))
+    if (take(*member, "finish")) {
       m_ended.push_back({&member->run, nameOf(RunStatus::completed), ""});
-    else if (member->alive)
+      if (settings.measure.isolation == MeasureSettings::Isolation::volume)
+        m_pool.giveBack(std::move(member->link), member->run.build->program(), volumeKeyOf(*member->run.point));
+    } else if (member->alive) {
       abandon(*member);
+    }
   }
+}
+
+bool Batch::hasRoomForAnother() {
+  std::uint64_t used = 0;
+  std::uint64_t largest = 0;
+  for (const auto& member : m_members) {
+    if (!member->alive || !member->link) continue;
+    const std::uint64_t bytes = member->link->privateBytes();
+    used += bytes;
+    largest = std::max(largest, bytes);
+  }
+  if (largest == 0) return true; // the first has to try
+  const std::uint64_t needed = largest + largest / 4 + kSpareBytes;
+  if (m_options.workerBytes) return used + needed <= *m_options.workerBytes;
+  const nlohmann::json available = hostFacts()["memory_available_bytes"];
+  return !available.is_number() || needed <= available.get<std::uint64_t>();
+}
+
+void Batch::begin(Member& member) {
+  const Build& build = *member.run.build;
+  const std::string& technique = member.run.point->settings.technique;
+  if (!build.digestsOf(technique)) {
+    end(member, RunStatus::unsupported, fmt::format("build \"{}\" has no technique \"{}\"", build.name(), technique),
+        {});
+    return;
+  }
+  const auto staging = m_experiment.stage(member.run.identity);
+  member.link = m_pool.take(build.program(), volumeKeyOf(*member.run.point));
+  member.link->start(startOf(member.run, m_options, m_experiment, staging));
+  take(member, "prepare");
 }
 
 void Batch::everyoneTakes(const std::string& turn, int orbit, bool shuffled) {
@@ -149,6 +184,17 @@ bool Batch::take(Member& member, const std::string& turn, const TurnRow& place) 
     }
     if (answer.kind == Kind::died) {
       end(member, RunStatus::crashed, fmt::format("the worker died in {}: {}", turn, answer.reason), {});
+      return false;
+    }
+    const double limitGib = settings.measure.memoryLimitGib;
+    const double usedGib = static_cast<double>(member.link->privateBytes()) / (1024.0 * 1024 * 1024);
+    if (limitGib > 0 && usedGib > limitGib) {
+      member.link->kill();
+      member.activeMs = activeMs;
+      end(member, RunStatus::outOfMemory,
+          fmt::format("over the memory limit of {} GiB in {}: {:.2f} GiB (measure.memory_limit_gib)", limitGib, turn,
+                      usedGib),
+          {});
       return false;
     }
     if (activeMs > 1000 * settings.measure.timeLimitSeconds) {

@@ -6,6 +6,7 @@
 #include "worker/progress.h"
 #include "worker/runner.h"
 #include "worker/worker_link.h"
+#include "worker/worker_pool.h"
 
 #include <functional>
 #include <memory>
@@ -25,7 +26,7 @@ struct PendingRun {
 class Batch {
 public:
   /// Takes the runs whose claims it gets.
-  Batch(const Experiment& experiment, const RunnerOptions& options, std::vector<PendingRun> runs);
+  Batch(const Experiment& experiment, const RunnerOptions& options, WorkerPool& pool, std::vector<PendingRun> runs);
   ~Batch();
 
   /// Prepare, warm up, headline orbits in shuffled turns, breakdown orbits, finish. Stops early when
@@ -34,6 +35,8 @@ public:
 
   /// Runs that other processes have claimed.
   const std::vector<PendingRun>& elsewhere() const { return m_elsewhere; }
+  /// Runs that memory was too short for beside the others: they are to be worked alone, after this batch.
+  const std::vector<PendingRun>& deferred() const { return m_deferred; }
   /// Status of each run of the batch that ended, in the order given.
   struct Ended {
     const PendingRun* run;
@@ -45,6 +48,8 @@ public:
 private:
   struct Member;
 
+  bool hasRoomForAnother();
+  void begin(Member& member);
   void everyoneTakes(const std::string& turn, int orbit, bool shuffled);
   bool take(Member& member, const std::string& turn, const TurnRow& place = {});
   void end(Member& member, RunStatus status, const std::string& reason, const nlohmann::json& provenance);
@@ -54,6 +59,7 @@ private:
 
   const Experiment& m_experiment;
   const RunnerOptions& m_options;
+  WorkerPool& m_pool;
   std::vector<std::unique_ptr<Member>> m_members;
   std::vector<Ended> m_ended;
   std::function<void(double, const std::string&)> m_advance;
@@ -61,6 +67,7 @@ private:
   double m_turnsTaken = 0;
   double m_turnsPlanned = 1;
   std::vector<PendingRun> m_elsewhere;
+  std::vector<PendingRun> m_deferred;
 };
 
 } // namespace volmark

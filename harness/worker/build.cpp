@@ -35,9 +35,10 @@ nlohmann::json askForDescription(const BuildChoice& choice) {
                                    "knows --build itself",
                                    choice.name, choice.program.string(), answer.reason));
   }
-  throw InputError(fmt::format("--build {}: {} gave no answer in {} s, allowed: a program of volmark that knows --build "
-                               "itself",
-                               choice.name, choice.program.string(), kAnswerMs / 1000));
+  throw InputError(
+      fmt::format("--build {}: {} gave no answer in {} s, allowed: a program of volmark that knows --build "
+                  "itself",
+                  choice.name, choice.program.string(), kAnswerMs / 1000));
 }
 
 } // namespace
@@ -49,9 +50,10 @@ BuildChoice parseBuild(const std::string& text) {
   const bool named = !choice.name.empty() && choice.name.size() <= kLongestName &&
                      std::all_of(choice.name.begin(), choice.name.end(), isNamePart);
   if (equals == std::string::npos || !named)
-    throw InputError(fmt::format("--build: found \"{}\", allowed: NAME=PROGRAM, as in base=../old/build/release/volmark, "
-                                 "a name of letters, digits, '_', '-' and '.'",
-                                 text));
+    throw InputError(
+        fmt::format("--build: found \"{}\", allowed: NAME=PROGRAM, as in base=../old/build/release/volmark, "
+                    "a name of letters, digits, '_', '-' and '.'",
+                    text));
   // Absolute, because a script must find itself wherever the worker is started.
   std::error_code error;
   choice.program = std::filesystem::absolute(text.substr(equals + 1), error);

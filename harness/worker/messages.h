@@ -1,12 +1,14 @@
 // JSON lines between the runner and a worker process, over two pipes.
 //
 // runner to worker   {"describe": 1}                     what the program is; nothing else before it or after
-//                    {"start": {...}}                    once; see WorkerStart
+//                    {"start": {...}}                    a run begins; after a finished one another may. See
+//                    WorkerStart
 //                    {"turn": "prepare"|"warm_up"|"headline"|"breakdown"|"finish", "orbit": k, "place": i, "of": n}
 // worker to runner   {"described": {"protocol": 1, "commit", "techniques": {name: {"module_digest", "build_digest"}}}}
 //                    {"done": "<turn>"}                  the turn is over, the worker waits
 //                    {"frames": n}                       still drawing; at most twice a second
 //                    {"failed": "<status>", "reason": "<one line>", "provenance": {...}}   the worker ends
+// When the runner closes its end, the worker ends.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -21,7 +23,8 @@ inline constexpr int kWorkerProtocol = 1;
 
 /// Everything a worker needs to know.
 struct WorkerStart {
-  nlohmann::json config;                     ///< resolved point
+  nlohmann::json config;                     ///< resolved point: what is written
+  nlohmann::json settings;                   ///< the same without defaults: what is read
   std::vector<std::string> techniqueFolders; ///< empty: the worker's own
   std::string scenesFolder;
   std::vector<std::string> dataFolders;
@@ -37,9 +40,9 @@ struct WorkerStart {
   std::string group;
   std::vector<std::pair<std::string, std::string>> labels; ///< axis, value
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerStart, config, techniqueFolders, scenesFolder, dataFolders, device, validate,
-                                   maximumBytes, stagingFolder, experimentFolder, pointHash, runHash, replicate,
-                                   pointIndex, group, labels)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerStart, config, settings, techniqueFolders, scenesFolder, dataFolders, device,
+                                   validate, maximumBytes, stagingFolder, experimentFolder, pointHash, runHash,
+                                   replicate, pointIndex, group, labels)
 
 /// Reads and writes lines on file descriptors. Not thread-safe.
 class LineChannel {

@@ -43,8 +43,7 @@ std::vector<Point*> chosenPoints(Scenario& scenario, const RunnerOptions& option
 void identifyPoints(const std::vector<Point*>& chosen, const RunnerOptions& options) {
   std::map<std::string, std::vector<Point*>> byVolume;
   for (Point* point : chosen) {
-    const SceneDescription& scene = point->settings.scene;
-    byVolume[scene.path.string() + point->config.value("volume", nlohmann::json()).dump()].push_back(point);
+    byVolume[volumeKeyOf(*point)].push_back(point);
   }
   for (const auto& [key, points] : byVolume) {
     const auto volume = openVolume(points.front()->settings.scene, options.data, options.maximumBytes);
@@ -188,6 +187,7 @@ private:
       else
         pending.push_back({point, &build, technique, identity});
     }
+    if (replicate % 2 == 1) std::reverse(pending.begin(), pending.end());
     m_planned += static_cast<int>(pending.size());
     if (!pending.empty()) m_plan.push_back(std::move(pending));
   }
@@ -202,12 +202,15 @@ private:
   void work(std::vector<PendingRun> runs) {
     const auto size = static_cast<double>(runs.size());
     const double before = m_done;
-    Batch batch(m_experiment, m_options, std::move(runs));
+    Batch batch(m_experiment, m_options, m_pool, std::move(runs));
     batch.work([&](double share, const std::string& what) { m_progress.advanceTo(before + share * size, what); });
     if (!batch.elsewhere().empty()) m_elsewhere.push_back(batch.elsewhere());
     for (const Batch::Ended& ended : batch.ended())
       count(ended);
-    m_done = before + size;
+    // Memory is short: whole processes alternate, and replicates turn the order around.
+    m_done = before + size - static_cast<double>(batch.deferred().size());
+    for (const PendingRun& run : batch.deferred())
+      if (!interruptRequested) work({run});
   }
 
   /// What other processes had claimed: done meanwhile, or taken over if they turn out to be gone, or left to them.
@@ -244,6 +247,7 @@ private:
   Progress& m_progress;
   DeviceIdentities m_devices;
   Experiment m_experiment;
+  WorkerPool m_pool;
   RunnerResult m_result;
   std::vector<std::vector<PendingRun>> m_plan;
   std::vector<std::vector<PendingRun>> m_elsewhere;

@@ -28,6 +28,8 @@ struct RunnerOptions {
   /// Every point is run by each of them, interleaved, under the label `build`; empty: by this program.
   std::vector<BuildChoice> builds;
   bool writeIndex = true;
+  /// What interleaved workers may use together; nothing: what the machine has available.
+  std::optional<std::uint64_t> workerBytes;
 };
 
 struct RunnerResult {

@@ -53,6 +53,14 @@ Session::~Session() {
   if (m_device) m_device->waitIdle();
 }
 
+std::uint64_t Session::close() {
+  if (m_device) m_device->waitIdle();
+  m_technique.reset();
+  m_slots.clear();
+  m_target.reset();
+  return m_device ? m_device->ledger().totalBytes() : 0;
+}
+
 std::uint64_t Session::techniqueBytes() const {
   return m_device ? m_device->ledger().totalBytes() - m_outputBytes : 0;
 }

@@ -69,6 +69,9 @@ public:
   const PointSettings& settings() const { return m_settings; }
   /// Null for techniques without a GPU.
   gpu::Device* device() const { return m_device.get(); }
+  /// Destroys the technique and all that frames were drawn with; returns the bytes of device memory that are still
+  /// in the ledger: 0, or somebody's leak. Nothing but device() may be called afterwards.
+  std::uint64_t close();
   /// What the ledger holds beyond the harness's own output: the technique's device memory. 0 without a GPU.
   std::uint64_t techniqueBytes() const;
 

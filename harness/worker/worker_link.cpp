@@ -7,8 +7,10 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <fstream>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,8 +19,16 @@ namespace volmark {
 
 namespace {
 
+/// For an idle worker to end: drivers join their threads, sanitizers look for leaks.
+constexpr int kGraceMs = 10000;
+
 /// In the child, between fork and exec: only async-signal-safe calls.
 [[noreturn]] void becomeWorker(const char* program, pid_t parent, int readFd, int writeFd) {
+  // If memory runs out, the system ends a worker, not the runner that writes down why.
+  if (const int score = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC); score >= 0) {
+    [[maybe_unused]] const auto ignored = ::write(score, "800", 3);
+    ::close(score);
+  }
   ::setpgid(0, 0); // Ctrl-C on the terminal is the runner's business
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);
@@ -60,9 +70,29 @@ WorkerLink::WorkerLink(const std::filesystem::path& program) {
 }
 
 WorkerLink::~WorkerLink() {
-  kill();
   ::close(m_toChild);
+  if (!m_idle || !endsByItself()) kill();
   ::close(m_fromChild);
+}
+
+bool WorkerLink::endsByItself() {
+  for (int i = 0; i < kGraceMs / 5; ++i) {
+    if (m_pid <= 0 || ::waitpid(m_pid, nullptr, WNOHANG) == m_pid) {
+      m_pid = -1;
+      return true;
+    }
+    ::usleep(5000);
+  }
+  return false;
+}
+
+std::uint64_t WorkerLink::privateBytes() const {
+  std::ifstream file(fmt::format("/proc/{}/status", m_pid));
+  std::uint64_t kib = 0;
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("RssAnon:") || line.starts_with("RssShmem:") || line.starts_with("VmSwap:"))
+      kib += std::strtoull(line.c_str() + line.find(':') + 1, nullptr, 10);
+  return kib * 1024;
 }
 
 void WorkerLink::describe() {
@@ -70,6 +100,7 @@ void WorkerLink::describe() {
 }
 
 void WorkerLink::start(const WorkerStart& start) {
+  m_idle = false;
   m_channel->send({{"start", start}});
 }
 
@@ -86,7 +117,10 @@ WorkerLink::Answer WorkerLink::wait(int timeoutMs) {
   }
   if (message.contains("described")) return {Answer::Kind::described, message["described"], ""};
   if (message.contains("failed")) return {Answer::Kind::failed, message, ""};
-  if (message.contains("done")) return {Answer::Kind::done, message, ""};
+  if (message.contains("done")) {
+    m_idle = message["done"] == "finish";
+    return {Answer::Kind::done, message, ""};
+  }
   return {Answer::Kind::frames, message, ""};
 }
 
@@ -102,7 +136,10 @@ std::string WorkerLink::reap() {
   while (::waitpid(m_pid, &status, 0) < 0 && errno == EINTR) {
   }
   m_pid = -1;
-  if (WIFSIGNALED(status)) return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  // Nobody but the system sends SIGKILL to a worker that isn't over a limit.
+  const char* hint =
+      WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL ? "; the machine may have run out of memory" : "";
+  if (WIFSIGNALED(status)) return fmt::format("signal {} ({}){}", WTERMSIG(status), strsignal(WTERMSIG(status)), hint);
   return fmt::format("exit code {}", WEXITSTATUS(status));
 }
 

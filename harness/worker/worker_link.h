@@ -4,6 +4,7 @@
 #include "results/records.h"
 #include "worker/messages.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -16,7 +17,7 @@ public:
   /// Starts a program of volmark as a worker. Its output goes where this process's goes until a run begins, and
   /// then to the run's log. The child dies with this process. Throws DeviceError when no process can be made.
   explicit WorkerLink(const std::filesystem::path& program);
-  /// Kills the child if it still lives.
+  /// Ends the child: one that waits for its next run ends by itself, others are killed.
   ~WorkerLink();
   WorkerLink(const WorkerLink&) = delete;
   WorkerLink& operator=(const WorkerLink&) = delete;
@@ -36,13 +37,18 @@ public:
 
   void kill();
 
+  /// Memory that the child shares with nobody; 0 if it is gone.
+  std::uint64_t privateBytes() const;
+
 private:
+  bool endsByItself();
   std::string reap();
 
   pid_t m_pid = -1;
   int m_toChild = -1;
   int m_fromChild = -1;
   std::unique_ptr<LineChannel> m_channel;
+  bool m_idle = true; ///< between runs
 };
 
 } // namespace volmark

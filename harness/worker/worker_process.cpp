@@ -9,6 +9,7 @@
 #include "worker/replay.h"
 #include "worker/session.h"
 #include "worker/timed_pass.h"
+#include "worker/worker_pool.h"
 
 #include <fmt/format.h>
 
@@ -20,6 +21,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace volmark {
@@ -36,7 +38,7 @@ constexpr int kStampTests = 5;
 
 Point pointOf(const WorkerStart& start, const TechniqueCatalogue& catalogue) {
   Point point;
-  point.settings = readPoint(start.config, "point", catalogue, start.scenesFolder);
+  point.settings = readPoint(start.settings, "point", catalogue, start.scenesFolder);
   point.config = start.config;
   for (const auto& [axis, value] : start.labels)
     point.labels.push_back({axis, value});
@@ -50,8 +52,43 @@ std::vector<fs::path> pathsOf(const std::vector<std::string>& texts) {
   return {texts.begin(), texts.end()};
 }
 
-std::vector<fs::path> modulesOf(const WorkerStart& start) {
-  return start.techniqueFolders.empty() ? techniqueFolders() : pathsOf(start.techniqueFolders);
+/// What a worker keeps from one run to the next.
+class Kept {
+public:
+  const TechniqueCatalogue& catalogue(const std::vector<std::string>& folders) {
+    if (!m_catalogue || m_folders != folders) {
+      m_catalogue.emplace(folders.empty() ? techniqueFolders() : pathsOf(folders));
+      m_folders = folders;
+    }
+    return *m_catalogue;
+  }
+
+  std::shared_ptr<const Volume> volume(const Point& point, const DataFolders& data, std::uint64_t maximumBytes) {
+    if (!m_volume || m_volumeKey != volumeKeyOf(point)) {
+      m_volume = nullptr; // before another takes its memory
+      m_volume = openVolume(point.settings.scene, data, maximumBytes);
+      m_volumeKey = volumeKeyOf(point);
+    }
+    return m_volume;
+  }
+
+private:
+  std::optional<TechniqueCatalogue> m_catalogue;
+  std::vector<std::string> m_folders;
+  std::shared_ptr<const Volume> m_volume;
+  std::string m_volumeKey;
+};
+
+/// Allocations over the limit fail in the process itself; what grows by other ways is seen by the runner.
+void limitMemory(double gib) {
+#ifndef __SANITIZE_ADDRESS__ // its shadow alone is larger
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  limit.rlim_cur = gib > 0 ? std::min(limit.rlim_max, static_cast<rlim_t>(gib * 1024 * 1024 * 1024)) : limit.rlim_max;
+  ::setrlimit(RLIMIT_DATA, &limit);
+#else
+  (void)gib;
+#endif
 }
 
 /// Drivers print to both streams, and so does whatever kills the process.
@@ -75,9 +112,11 @@ nlohmann::json description() {
 /// One run: its parts in the order of the turns.
 class Run {
 public:
-  Run(const WorkerStart& start, LineChannel& runner)
-      : m_start(start), m_runner(runner), m_catalogue(modulesOf(start)), m_point(pointOf(start, m_catalogue)),
-        m_entry(m_catalogue.get(m_point.settings.technique)) {}
+  Run(const WorkerStart& start, LineChannel& runner, Kept& kept)
+      : m_start(start), m_runner(runner), m_kept(kept), m_point(pointOf(start, kept.catalogue(start.techniqueFolders))),
+        m_entry(kept.catalogue(start.techniqueFolders).get(m_point.settings.technique)) {
+    limitMemory(m_point.settings.measure.memoryLimitGib);
+  }
 
   void take(const std::string& turn, const TurnRow& place) {
     m_turnBeginMs = monotonicMs();
@@ -113,7 +152,7 @@ private:
 
   void prepare() {
     const DataFolders data{pathsOf(m_start.dataFolders)};
-    auto volume = openVolume(m_point.settings.scene, data, m_start.maximumBytes);
+    auto volume = m_kept.volume(m_point, data, m_start.maximumBytes);
     m_record.provenance = nlohmann::json::object();
     m_session = std::make_unique<Session>(m_point.settings, m_entry, std::move(volume),
                                           SessionOptions{m_start.device, m_start.validate});
@@ -175,8 +214,11 @@ private:
 
     const Judgement judgement{*m_session, m_trace, m_start.stagingFolder, m_start.experimentFolder, m_start.runHash};
     m_record.pictures = judgePictures(judgement, captured, m_record.frames);
-    checkValidation();
     m_record.provenance = provenanceNow();
+    const std::uint64_t leaked = m_session->close();
+    m_record.checks.push_back(
+        {"memory_is_returned", leaked == 0, fmt::format("{} bytes in the ledger after the technique's end", leaked)});
+    checkValidation();
     m_record.activeSeconds = (m_activeMs + monotonicMs() - m_turnBeginMs) / 1000;
     const Experiment experiment{fs::path(m_start.experimentFolder)};
     experiment.commit({m_start.pointHash, m_start.runHash, m_start.replicate}, m_point, m_entry, m_record);
@@ -217,7 +259,7 @@ private:
 
   WorkerStart m_start;
   LineChannel& m_runner;
-  TechniqueCatalogue m_catalogue;
+  Kept& m_kept;
   Point m_point;
   const CatalogueEntry& m_entry;
   std::unique_ptr<Session> m_session;
@@ -241,6 +283,7 @@ std::string oneLine(std::string text) {
 
 int serveTurns() {
   LineChannel runner(kWorkerReadFd, kWorkerWriteFd);
+  Kept kept;
   std::unique_ptr<Run> run;
   const auto failed = [&](RunStatus status, const std::string& reason) {
     nlohmann::json known = run ? run->provenanceNow() : provenance(nullptr);
@@ -257,19 +300,20 @@ int serveTurns() {
       if (message.contains("start")) {
         const auto start = message["start"].get<WorkerStart>();
         printInto(fs::path(start.stagingFolder) / "log.txt");
-        run = std::make_unique<Run>(start, runner);
+        run = std::make_unique<Run>(start, runner, kept);
         continue;
       }
       if (!message.contains("turn")) continue;
       const std::string turn = message["turn"];
       run->take(turn, {OrbitKind::headline, message["orbit"], message["place"], message["of"]});
+      if (turn == "finish") run.reset();
       runner.send({{"done", turn}});
-      if (turn == "finish") break;
     }
     return 0;
   } catch (const UnsupportedError& error) {
     return failed(RunStatus::unsupported, error.what());
   } catch (const std::bad_alloc&) {
+    limitMemory(0); // so that there is some to say it with
     return failed(RunStatus::outOfMemory, "out of host memory");
   } catch (const std::exception& error) {
     return failed(RunStatus::failed, error.what());

@@ -1,4 +1,4 @@
-// The child's side: one run from start to committed results, one turn at a time.
+// The child's side: runs from start to committed results, one after the other, one turn at a time.
 #pragma once
 
 namespace volmark {
@@ -7,7 +7,7 @@ namespace volmark {
 inline constexpr int kWorkerReadFd = 3;
 inline constexpr int kWorkerWriteFd = 4;
 
-/// Serves turns until "finish" or until the runner is gone. Returns the process's exit code.
+/// Serves turns until a run fails or the runner is gone. Returns the process's exit code.
 int serveTurns();
 
 } // namespace volmark

@@ -1,9 +1,12 @@
 #include "test_techniques.h"
 #include "volmark/error.h"
+#include "volmark/gpu/device.h"
 
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <new>
+#include <sys/mman.h>
 #include <thread>
 
 namespace volmark::test {
@@ -38,11 +41,24 @@ public:
   std::vector<gpu::MemoryItem> memory() const override { return {}; }
 
 private:
+  static constexpr std::size_t kChunk = 64 << 20;
+
+  /// Memory that no limit of the process sees.
+  static void* sharedChunk() {
+    void* memory = mmap(nullptr, kChunk, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    return memory;
+  }
+
   void misbehave() const {
     if (m_fault == "crash") std::raise(SIGSEGV);
     if (m_fault == "kill") std::raise(SIGKILL);
     if (m_fault == "throw") throw std::runtime_error("this technique throws");
     if (m_fault == "memory") throw std::bad_alloc();
+    if (m_fault == "device_lost") gpu::check(VK_ERROR_DEVICE_LOST, "vkQueueSubmit2");
+    // A little in every frame, so that limits are met on the way.
+    if (m_fault == "allocate") std::memset(new char[kChunk], 1, kChunk);
+    if (m_fault == "share") std::memset(sharedChunk(), 1, kChunk);
     while (m_fault == "hang")
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
@@ -62,9 +78,10 @@ TechniqueFactory faultsFactory() {
   info.draws = Draws::both;
   info.needsGpu = false;
   info.shadings = {ShadingModel::none};
-  info.parameters = {ParameterDescriptor::choice(
-                         "fault", "none", {"none", "crash", "kill", "throw", "memory", "hang", "unsupported", "lie"},
-                         "What goes wrong"),
+  info.parameters = {ParameterDescriptor::choice("fault", "none",
+                                                 {"none", "crash", "kill", "throw", "memory", "allocate", "share",
+                                                  "device_lost", "hang", "unsupported", "lie"},
+                                                 "What goes wrong"),
                      ParameterDescriptor::integer("at", 4, 0, 1000000, "frame", "When it goes wrong"),
                      ParameterDescriptor::number("frame_ms", 0.2, 0, 1000, "ms", "How long a frame sleeps")};
   info.passes = {{"fill", "fills the picture"}};
