@@ -4,7 +4,7 @@ import shutil
 import pytest
 import synthetic
 from volmark_analysis.__main__ import main
-from volmark_analysis.load import load_experiment
+from volmark_analysis.load import load_experiment, read_csv
 from volmark_analysis.points import point_results
 from volmark_analysis.report import render
 
@@ -171,3 +171,16 @@ def test_all_failed(tmp_path, capsys):
     capsys.readouterr()
     assert main(["plots", str(folder)]) == 2
     assert "nothing to plot" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("change", [
+    lambda line: '"' + line.replace(",", '","') + '"\n',
+    lambda line: line + "\r\n"])
+def test_tables_read_alike_however_they_are_written(experiment_folder, tmp_path, change):
+    path = next(experiment_folder.glob("runs/*/[!.]*/frames.csv"))
+    head, *lines = path.read_text().splitlines()
+    (tmp_path / "frames.csv").write_bytes((head + "\n" + "".join(map(change, lines))).encode())
+    plain, changed = (read_csv(p, "frames", [], text=("orbit_kind", "disturbed")) for p in (path, tmp_path / "frames.csv"))
+    assert list(plain) == list(changed) and len(plain["frame"]) > 24
+    for name, values in plain.items():
+        assert [str(v) for v in values] == [str(v) for v in changed[name]]

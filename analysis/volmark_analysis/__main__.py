@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 import sys
 from pathlib import Path
@@ -28,6 +29,8 @@ The statistics are defined in harness/README.md, section 6, and at the end of ev
 
 def main(arguments: list[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
+    # Documents of a thousand runs hold few cycles: by default the collector would search them over and over.
+    gc.set_threshold(50_000, 20, 100)
     try:
         options.run(options)
     except InputError as error:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -68,31 +70,44 @@ class Run:
         return self.status == "completed"
 
     @cached_property
-    def frames(self) -> pd.DataFrame:
-        """frames.csv: one row per drawn frame."""
-        frames = read_csv(self.folder / "frames.csv", "frames",
-                          ["orbit_kind", "orbit", "frame", "phase", *_FRAME_TIMES, "disturbed"],
-                          text=("orbit_kind", "disturbed"))
-        kinds = frames.orbit_kind.to_numpy()
+    def columns(self) -> dict[str, np.ndarray]:
+        """frames.csv by column: a value per drawn frame."""
+        path = self.folder / "frames.csv"
+        columns = read_csv(path, "frames", ["orbit_kind", "orbit", "frame", "phase", *_FRAME_TIMES, "disturbed"],
+                           text=("orbit_kind", "disturbed"))
+        kinds = columns["orbit_kind"]
         unknown = set(kinds) - set(ORBIT_KINDS)
         if unknown:
-            raise InputError(f"{self.folder / 'frames.csv'}: column orbit_kind: found {sorted(unknown)[0]!r}, "
-                             f"allowed: {', '.join(ORBIT_KINDS)}")
+            raise InputError(f"{path}: column orbit_kind: found {sorted(unknown)[0]!r}, allowed: {', '.join(ORBIT_KINDS)}")
         if self.completed and "headline" not in kinds:
-            raise InputError(f"{self.folder / 'frames.csv'}: no headline frames in a completed run")
-        if not (frames.frame_ms.to_numpy()[kinds == "headline"] > 0).all():
-            raise InputError(f"{self.folder / 'frames.csv'}: column frame_ms: a headline frame has no time above 0")
-        return frames
+            raise InputError(f"{path}: no headline frames in a completed run")
+        if not (columns["frame_ms"][kinds == "headline"] > 0).all():
+            raise InputError(f"{path}: column frame_ms: a headline frame has no time above 0")
+        return columns
 
     @cached_property
+    def _is_headline(self) -> np.ndarray:
+        return self.columns["orbit_kind"] == "headline"
+
+    def headline_values(self, column: str) -> np.ndarray:
+        """One column of the headline frames."""
+        return self.columns[column][self._is_headline]
+
+    @cached_property
+    def frames(self) -> pd.DataFrame:
+        """`columns` as a table. Making one takes longer than all arithmetic on a run's few frames: what a report needs of
+        every run comes from the columns."""
+        return pd.DataFrame(self.columns, copy=False)
+
+    @property
     def headline(self) -> pd.DataFrame:
-        return self.frames[self.frames.orbit_kind.to_numpy() == "headline"]
+        return self.frames[self._is_headline]
 
     @cached_property
     def counter_rows(self) -> pd.DataFrame | None:
         """counters.csv: one row per counted frame; None if there is no such file."""
         path = self.folder / "counters.csv"
-        return read_csv(path, "counters", ["frame", "phase"]) if path.exists() else None
+        return pd.DataFrame(read_csv(path, "counters", ["frame", "phase"])) if path.exists() else None
 
 
 @dataclass
@@ -231,41 +246,61 @@ def _read_json(path: Path, name: str) -> dict:
     return document
 
 
-def read_csv(path: Path, name: str, columns: list[str], text: tuple[str, ...] = ()) -> pd.DataFrame:
-    """A CSV file of volmark as a frame: `columns` must be there, all but `text` columns must be numbers (empty
-    fields become NaN). Raises InputError."""
+def read_csv(path: Path, name: str, columns: list[str], text: tuple[str, ...] = ()) -> dict[str, np.ndarray]:
+    """A CSV file of volmark by column: `columns` must be there, all but `text` columns must be numbers (empty fields
+    become NaN). Raises InputError."""
     try:
-        with open(path, encoding="utf-8", newline="") as file:
-            first = file.readline().rstrip("\r\n")
-            expected = f"# volmark.{name} {VERSION}"
-            if first != expected:
-                raise InputError(f"{path}: line 1: found {first[:60]!r}, allowed: {expected!r}")
-            names, *rows = list(csv.reader(file)) or [[]]
+        text_of_file = path.read_bytes().decode("utf-8")
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}") from None
-    except (UnicodeDecodeError, csv.Error) as error:
+    except UnicodeDecodeError as error:
         raise InputError(f"{path}: not a table ({error})") from None
-    if not names:
-        raise InputError(f"{path}: not a table (no line with the columns)")
+    first, _, table = text_of_file.partition("\n")
+    expected = f"# volmark.{name} {VERSION}"
+    if first.rstrip("\r") != expected:
+        raise InputError(f"{path}: line 1: found {first[:60]!r}, allowed: {expected!r}")
+    names, fields_of = _columns(path, table)
     for column in columns:
         if column not in names:
             raise InputError(f"{path}: no column {column!r}, found: {', '.join(names)}")
-    for line, row in enumerate(rows, start=3):
-        if len(row) != len(names):
-            raise InputError(f"{path}: not a table (line {line} has {len(row)} fields, expected {len(names)})")
-    values = dict(zip(names, zip(*rows) if rows else [()] * len(names)))
-    return pd.DataFrame({column: np.array(fields, dtype=object) if column in text else _numbers(path, column, fields)
-                         for column, fields in values.items()})
+    return {column: np.array(fields, dtype=object) if column in text else _numbers(path, column, fields)
+            for column, fields in zip(names, fields_of)}
 
 
-def _numbers(path: Path, column: str, fields: tuple[str, ...]) -> np.ndarray:
-    # Not pandas' reader: with a thousand small files its set-up would take most of a report's time.
+def _columns(path: Path, table: str) -> tuple[list[str], list[list[str]]]:
+    """Names and fields of each column."""
+    if not table.strip():
+        raise InputError(f"{path}: not a table (no line with the columns)")
+    # Neither pandas' reader nor a list per row: with a thousand small files, setting up the one and collecting the
+    # others would take most of a report's time.
+    if '"' in table or "\r" in table:
+        try:
+            rows = list(csv.reader(io.StringIO(table, newline="")))
+        except csv.Error as error:
+            raise InputError(f"{path}: not a table ({error})") from None
+        widths = [len(row) for row in rows]
+        fields = list(chain.from_iterable(rows))
+    else:
+        lines = table.removesuffix("\n").split("\n")
+        widths = [line.count(",") + 1 for line in lines]
+        fields = ",".join(lines).split(",")
+    count = widths[0]
+    if widths.count(count) < len(widths):
+        line, width = next((i, w) for i, w in enumerate(widths, start=2) if w != count)
+        raise InputError(f"{path}: not a table (line {line} has {width} fields, expected {count})")
+    return fields[:count], [fields[count + i::count] for i in range(count)]
+
+
+def _numbers(path: Path, column: str, fields: list[str]) -> np.ndarray:
     try:
-        numbers = [float(field) if field else math.nan for field in fields]
+        return np.array(list(map(float, fields)))
+    except ValueError:  # an empty field, or no number
+        pass
+    try:
+        return np.array([float(field) if field else math.nan for field in fields])
     except ValueError:
         line, wrong = next((i, field) for i, field in enumerate(fields, start=3) if field and not _is_number(field))
         raise InputError(f"{path}: line {line}, column {column}: found {wrong!r}, expected a number") from None
-    return np.array(numbers)
 
 
 def _is_number(field: str) -> bool:

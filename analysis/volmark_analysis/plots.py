@@ -15,7 +15,7 @@ matplotlib.use("Agg")
 import numpy as np  # noqa: E402
 from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator  # noqa: E402
 
 from .columns import error_text, number_text  # noqa: E402
 from .limits import MOST_BARS, MOST_COUNTER_PLOTS, MOST_LINES, MOST_PANELS, evenly  # noqa: E402
@@ -380,7 +380,7 @@ def _time_axis(ax, lowest: float, highest: float) -> None:
 def _plain_log_ticks(axis) -> None:
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
-    axis.set_minor_formatter(NullFormatter())
+    axis.set_minor_locator(NullLocator())
 
 
 def _bar_names(ax, panel: Panel) -> None:
@@ -447,7 +447,7 @@ def _drawn(plot: Plot, rows: list[list[Panel]], heights: list[float], styles, ti
             above = _LINE * lines + 0.1
             if titles:
                 title = f"{panel.title}\n{panel.note}" if panel.note else panel.title
-                ax.set_title(title, loc="left", fontsize=10, fontweight="bold", color=TEXT, pad=72 * above)
+                ax.set_title(title, loc="left", fontsize=10, fontweight="bold", color=TEXT, pad=72 * above, y=1.0)
                 above += 0.2 * (1 + title.count("\n")) + 0.05
             # Placed by hand: matplotlib's layout engines would take most of the time of a report.
             left, right, below = 0.12 if not len(ax.get_yticks()) else 0.75, 0.15, 0.5

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import pandas as pd
 
 from .load import Experiment, Run
 from .statistics import POSES_FOR_LOW1, Ratio, mean_interval, paired_ratio, statistics_of, unpaired_ratio
@@ -59,9 +58,14 @@ class PointResult:
         return str(name) if isinstance(name, str) else self.labels.get("scene", "")
 
     @cached_property
+    def _orbits(self) -> list[list[tuple[np.ndarray, np.ndarray]]]:
+        """Per completed replicate, per headline orbit, its frames' phases and times."""
+        return [_by_orbit(run) for run in self.completed]
+
+    @property
     def processes(self) -> list[list[np.ndarray]]:
         """Per completed replicate, per headline orbit, its frame times."""
-        return [[times for _, times in _by_orbit(run.headline)] for run in self.completed]
+        return [[times for _, times in orbits] for orbits in self._orbits]
 
     @cached_property
     def statistics(self) -> dict[str, float]:
@@ -70,7 +74,7 @@ class PointResult:
             return {}
         statistics = statistics_of(np.concatenate([orbit for process in self.processes for orbit in process]))
         for column, name in (("host_ms", "host_median_ms"), ("cpu_ms", "cpu_median_ms"), ("gpu_ms", "gpu_median_ms")):
-            values = np.concatenate([run.headline[column].to_numpy() for run in self.completed])
+            values = np.concatenate([run.headline_values(column) for run in self.completed])
             values = values[~np.isnan(values)]
             if len(values):
                 statistics[name] = float(np.median(values))
@@ -92,7 +96,7 @@ class PointResult:
 
     @cached_property
     def poses(self) -> int:
-        return max((len(np.unique(run.headline.phase.to_numpy())) for run in self.completed), default=0)
+        return max((len(np.unique(run.headline_values("phase"))) for run in self.completed), default=0)
 
     @property
     def frames_per_orbit(self) -> int:
@@ -108,7 +112,7 @@ class PointResult:
 
     @property
     def disturbed_frames(self) -> int:
-        return sum(cause not in ("", "0") for run in self.completed for cause in run.headline.disturbed.to_numpy())
+        return sum(cause not in ("", "0") for run in self.completed for cause in run.headline_values("disturbed"))
 
     @property
     def stamps_ratio(self) -> float | None:
@@ -152,10 +156,10 @@ class PointResult:
         """Mean time of each pass, from the breakdown orbits."""
         times: dict[str, list[np.ndarray]] = {}
         for run in self.completed:
-            breakdown = run.frames.orbit_kind.to_numpy() == "breakdown"
-            for column in run.frames.columns if breakdown.any() else ():
+            breakdown = run.columns["orbit_kind"] == "breakdown"
+            for column, values in run.columns.items() if breakdown.any() else ():
                 if column.startswith("pass."):
-                    times.setdefault(column[len("pass."):], []).append(run.frames[column].to_numpy()[breakdown])
+                    times.setdefault(column[len("pass."):], []).append(values[breakdown])
         frames = max((sum(map(len, parts)) for parts in times.values()), default=0)
         # A pass that a frame does not have took no time in it.
         return {name: float(np.nansum(np.concatenate(parts)) / frames) for name, parts in times.items()
@@ -179,32 +183,34 @@ class PointResult:
     def orbit_matrices(self) -> list[np.ndarray] | None:
         """Per process: orbits x poses. None if poses differ between orbits (timed pacing)."""
         matrices = []
-        for run in self.completed:
-            orbits = _by_orbit(run.headline)
-            for phases, _ in orbits:
-                if len(phases) != len(self.phases) or not np.allclose(phases, self.phases, atol=1e-6):
-                    return None
+        for orbits in self._orbits:
+            if not all(_same_poses(phases, self.phases) for phases, _ in orbits):
+                return None
             matrices.append(np.array([times for _, times in orbits]))
         return matrices
 
-    @cached_property
+    @property
     def phases(self) -> np.ndarray:
         """Of the first orbit's frames."""
-        return _by_orbit(self.completed[0].headline)[0][0]
+        return self._orbits[0][0][0]
 
 
-def _by_orbit(rows: pd.DataFrame) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Phases and times of each orbit's frames, in order."""
-    orbits, frames = rows.orbit.to_numpy(), rows.frame.to_numpy()
+def _same_poses(a: np.ndarray, b: np.ndarray) -> bool:
+    return len(a) == len(b) and float(np.abs(a - b).max()) <= 1e-6
+
+
+def _by_orbit(run: Run) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Phases and times of each headline orbit's frames, in order."""
+    orbits, frames, phases, times = map(run.headline_values, ("orbit", "frame", "phase", "frame_ms"))
     order = np.lexsort((frames, orbits))
     starts = np.flatnonzero(np.diff(orbits[order])) + 1
-    return list(zip(np.split(rows.phase.to_numpy()[order], starts), np.split(rows.frame_ms.to_numpy()[order], starts)))
+    return list(zip(np.split(phases[order], starts), np.split(times[order], starts)))
 
 
 def ratio_of(a: PointResult, b: PointResult) -> Ratio:
     """Time of `a` over time of `b`; both must have completed. Paired by pose where both have the same poses."""
     times_a, times_b = a.orbit_matrices, b.orbit_matrices
-    if times_a and times_b and len(a.phases) == len(b.phases) and np.allclose(a.phases, b.phases, atol=1e-6):
+    if times_a and times_b and _same_poses(a.phases, b.phases):
         same = [r.replicate for r in a.completed] == [r.replicate for r in b.completed]
         return paired_ratio(times_a, times_b, same_processes=same)
     return unpaired_ratio(a.statistics["mean_ms"], b.statistics["mean_ms"], min(len(a.completed), len(b.completed)))
