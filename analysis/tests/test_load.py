@@ -114,20 +114,52 @@ def test_malformed_runs(fresh_folder, capsys, change, text):
 
 
 @pytest.mark.parametrize("content", ["", "{", "[]", "\x00", '{"format": "volmark.run"'])
-def test_run_json_that_is_not_a_document(fresh_folder, capsys, content):
+def test_a_damaged_run_json_costs_its_own_run_alone(fresh_folder, content):
+    before = load_experiment(fresh_folder)
     path = run_files(fresh_folder)[0]
     path.write_text(content)
-    refused(capsys, fresh_folder, str(path))
+    left_out_and_named(fresh_folder, before, path)
+
+
+@pytest.mark.parametrize("cut", [
+    lambda content: content[:-3],
+    lambda content: content[:len(content) // 3],
+    lambda content: content[:content.rindex(b"\nheadline,") + 1],
+    lambda content: b""])
+def test_a_cut_off_table_costs_its_own_run_alone(fresh_folder, cut):
+    before = load_experiment(fresh_folder)
+    path = next(run.folder for run in before.runs if run.completed) / "frames.csv"
+    path.write_bytes(cut(path.read_bytes()))
+    left_out_and_named(fresh_folder, before, path)
+
+
+def test_a_missing_table_costs_its_own_run_alone(fresh_folder):
+    before = load_experiment(fresh_folder)
+    path = next(run.folder for run in before.runs if run.completed) / "frames.csv"
+    path.unlink()
+    left_out_and_named(fresh_folder, before, path)
+
+
+def left_out_and_named(folder, before, path):
+    after = load_experiment(folder)
+    assert len(after.runs) == len(before.runs) - 1 and len(after.damaged) == 1
+    assert path.parent not in [run.folder for run in after.runs]
+    assert str(path) in after.damaged[0]
+    page = render(after, point_results(after), [])
+    assert "damaged files" in page and path.parent.name in page
+
+
+def test_nothing_but_damaged_runs_is_one_line(fresh_folder, capsys):
+    for path in fresh_folder.glob("runs/*/*/run.json"):
+        path.write_text("{")
+    refused(capsys, fresh_folder, "run.json: not JSON")
 
 
 @pytest.mark.parametrize("change, text", [
     (lambda t: t.replace("# volmark.frames 1", "# volmark.frames 2"), "allowed: '# volmark.frames 1'"),
     (lambda t: t.replace("frame_ms,", "frame,"), "no column 'frame_ms'"),
     (lambda t: t.replace("headline,0,0,0.0,", "headline,0,0,zero,"), "column phase: found 'zero', expected a number"),
-    (lambda t: t.replace("headline,", "warm,"), "column orbit_kind: found 'warm', allowed: warm_up, headline"),
-    (lambda t: t.replace("headline,", "warm_up,"), "no headline frames"),
-    (lambda t: "", "line 1"),
-    (lambda t: "# volmark.frames 1\n", "not a table"),
+    (lambda t: t.replace("warm_up,", "warm,"), "column orbit_kind: found 'warm', allowed: warm_up, headline"),
     (lambda t: t + "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17\n", "not a table"),
 ])
 def test_malformed_frames(fresh_folder, capsys, change, text):
@@ -135,12 +167,6 @@ def test_malformed_frames(fresh_folder, capsys, change, text):
     path = load_experiment(fresh_folder).runs[0].folder / "frames.csv"
     path.write_text(change(path.read_text()))
     refused(capsys, fresh_folder, str(path), text)
-
-
-def test_completed_run_without_frames(fresh_folder, capsys):
-    path = run_files(fresh_folder)[0].parent / "frames.csv"
-    path.unlink()
-    refused(capsys, fresh_folder, str(path), "missing")
 
 
 def test_absent_optional_parts_are_fine(fresh_folder):

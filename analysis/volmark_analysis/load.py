@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from .errors import InputError
+from .errors import DamagedFile, InputError
 
 VERSION = 1
 STATUSES = ("completed", "failed", "crashed", "timed_out", "unsupported", "out_of_memory")
@@ -127,6 +127,8 @@ class Experiment:
     runs: list[Run]
     unfinished: list[Path] = field(default_factory=list)
     """Run folders without run.json: still being written, or left by a stopped program."""
+    damaged: list[str] = field(default_factory=list)
+    """One line for each run that is left out because its files are cut off or overwritten."""
 
     @property
     def current_runs(self) -> list[Run]:
@@ -149,15 +151,18 @@ def load_experiment(folder: str | Path) -> Experiment:
         labels = need(f"points/{i}/labels", dict)
         points.append(Point(need(f"points/{i}/index", int), {k: str(v) for k, v in labels.items()},
                             need(f"points/{i}/block", int), need(f"points/{i}/group", str)))
-    runs, unfinished = _load_runs(folder)
+    runs, unfinished, damaged = _load_runs(folder)
     if not any(run.point_index is not None for run in runs):
+        if damaged:
+            raise InputError(damaged[0])
         raise InputError(f"{folder}: no finished run (no runs/*/*/run.json); run the scenario first")
     return Experiment(
         folder=folder, name=need("name", str), title=need("title", str), description=need("description", str),
         config_file=need("config_file", str), profile=need("profile", str), created=need("created", str),
         assignments=[str(a) for a in need("assignments", list)], program=need("program", dict),
         scenario=need("scenario", dict), axes=[str(a) for a in need("axes", list)],
-        points=sorted(points, key=lambda p: p.index), runs=runs, unfinished=unfinished)
+        points=sorted(points, key=lambda p: p.index), runs=runs, unfinished=unfinished,
+        damaged=damaged)
 
 
 def _nearby(folder: Path) -> str:
@@ -166,15 +171,30 @@ def _nearby(folder: Path) -> str:
     return f"; experiments inside: {', '.join(inside[:5])}" if inside else ""
 
 
-def _load_runs(folder: Path) -> tuple[list[Run], list[Path]]:
-    runs, unfinished = [], []
+def _load_runs(folder: Path) -> tuple[list[Run], list[Path], list[str]]:
+    runs, unfinished, damaged = [], [], []
     for run_folder in sorted(p for p in folder.glob("runs/*/*") if p.is_dir()):
         # Hidden folders are being written: their run.json doesn't count yet.
         if not run_folder.name.startswith(".") and (run_folder / "run.json").is_file():
-            runs.append(_load_run(run_folder))
+            try:
+                runs.append(_load_run(run_folder))
+            except DamagedFile as error:
+                damaged.append(str(error))
         else:
             unfinished.append(run_folder)
-    return sorted(runs, key=lambda r: (-1 if r.point_index is None else r.point_index, r.replicate, r.run)), unfinished
+    runs.sort(key=lambda r: (-1 if r.point_index is None else r.point_index, r.replicate, r.run))
+    return runs, unfinished, damaged
+
+
+def _refuse_cut_frames(path: Path, headline_frames: int | None) -> None:
+    """Counts rows without reading them: what is cut off, in a line or between two, has fewer than run.json says."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise DamagedFile(f"{path}: {error.strerror or error}, but run.json says that the run completed") from None
+    rows = content.count(b"\nheadline,")
+    if not content.endswith(b"\n") or (headline_frames is not None and rows < headline_frames):
+        raise DamagedFile(f"{path}: cut off: found {rows} headline frames, expected {headline_frames}")
 
 
 def _load_run(folder: Path) -> Run:
@@ -188,8 +208,7 @@ def _load_run(folder: Path) -> Run:
         for name in STATISTICS:
             need(f"statistics/frame/{name}", _NUMBER)
         need("technique/name", str)
-        if not (folder / "frames.csv").is_file():
-            raise InputError(f"{folder / 'frames.csv'}: missing, but run.json says that the run completed")
+        _refuse_cut_frames(folder / "frames.csv", document["statistics"].get("frames"))
     for i, _ in enumerate(document.get("pictures") or []):
         need(f"pictures/{i}/frame", int)
         need(f"pictures/{i}/view", int)
@@ -236,9 +255,9 @@ def _read_json(path: Path, name: str) -> dict:
     except OSError as error:
         raise InputError(f"{path}: {error.strerror or error}") from None
     except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not JSON ({error})") from None
+        raise DamagedFile(f"{path}: not JSON ({error})") from None
     if not isinstance(document, dict):
-        raise InputError(f"{path}: found {json.dumps(document)[:40]}, expected an object")
+        raise DamagedFile(f"{path}: found {json.dumps(document)[:40]}, expected an object")
     if document.get("format") != name:
         raise InputError(f"{path}: /format: found {json.dumps(document.get('format'))}, allowed: \"{name}\"")
     if document.get("version") != VERSION:

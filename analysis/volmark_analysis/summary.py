@@ -139,6 +139,10 @@ def warnings(experiment: Experiment, results: list[PointResult]) -> list[str]:
                      f"time spent since the history was empty.")
     if experiment.unfinished:
         found.append(f"{len(experiment.unfinished)} run folder(s) without a finished run.json: still running, or stopped.")
+    if experiment.damaged:
+        more = f" (and {len(experiment.damaged) - 1} more)" if len(experiment.damaged) > 1 else ""
+        found.append(f"{len(experiment.damaged)} run(s) with damaged files are left out; remove their folders and run the "
+                     f"scenario again: {experiment.damaged[0]}{more}.")
     stale = len(experiment.runs) - len(experiment.current_runs)
     if stale:
         found.append(f"{stale} runs of points that the scenario no longer has are left out.")
