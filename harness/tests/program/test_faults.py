@@ -130,6 +130,26 @@ def test_a_missing_module_is_one_line(volmark):
     assert not volmark.results.exists()
 
 
+@pytest.mark.parametrize("name", ["../out", "a/../../out", "/out", "..", ".hidden", "a/b", "$(touch out)", "`touch out`",
+                                  "out;touch out", "a\\b", "a\nb", ""])
+def test_a_config_names_no_other_folder(volmark, name):
+    path = volmark.folder / "config.json"
+    path.write_text(json.dumps({"volmark": 1, "name": name, "set": {**SMALL, "technique": {"name": "test_host_threads"}}}))
+    result = run(volmark, path)
+    assert result.returncode == 2 and "/name: " in result.stderr and result.stderr.count("\n") == 1
+    assert sorted(entry.name for entry in volmark.folder.iterdir()) == ["config.json"]
+
+
+def test_texts_of_a_config_write_nothing_outside_the_results(volmark):
+    evil = "../../../out $(touch out) `touch out` ; touch out | touch out"
+    document = {"title": evil, "description": evil,
+                "set": {**SMALL, "technique": {"name": "test_host_threads", "parameters": {}}},
+                "blocks": [{"axes": {"case": {"values": [{"label": evil, "set": {}}, {"label": "../" * 20, "set": {}}]}}}]}
+    assert run(volmark, volmark.scenario(document)).returncode == 0
+    assert sorted(entry.name for entry in volmark.folder.iterdir()) == ["results", "scenario.json"]
+    assert sorted(entry.name for entry in volmark.results.iterdir()) == ["scenario"]
+
+
 def workers_of(process):
     children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
     try:
