@@ -43,7 +43,8 @@ void GzipReader::advance() {
   if (m_stream.avail_in == 0) fill();
   const int result = inflate(&m_stream, Z_NO_FLUSH);
   if (result == Z_STREAM_END) return startNextMember();
-  if (result == Z_BUF_ERROR && m_stream.avail_in == 0 && (m_file.eof() || m_left == 0))
+  // Also where the file can't be read on.
+  if (result == Z_BUF_ERROR && m_stream.avail_in == 0 && (!m_file || m_left == 0))
     throw InputError(fmt::format("{}: the gzip stream is cut off", m_place));
   if (result != Z_OK && result != Z_BUF_ERROR)
     throw InputError(

@@ -28,11 +28,17 @@ std::vector<std::byte> inflateVoxels(const NrrdHeader& header) {
     left -= part;
   }
 
-  std::vector<std::byte> voxels = allocateVoxels(place, header.voxelBytes());
-  const std::size_t found = reader.read(voxels);
-  if (found < voxels.size())
-    throw InputError(fmt::format("{}: the gzip stream holds {} bytes of voxels, expected {} as the header declares",
-                                 place, found, voxels.size()));
+  // Memory grows with what is there, not with what the header declares.
+  const std::uint64_t declared = header.voxelBytes();
+  std::vector<std::byte> voxels = reserveVoxels(place, declared);
+  while (voxels.size() < declared) {
+    const std::size_t done = voxels.size();
+    voxels.resize(static_cast<std::size_t>(std::min<std::uint64_t>(declared, done + kBlockBytes)));
+    const std::size_t found = done + reader.read(std::span(voxels).subspan(done));
+    if (found < voxels.size())
+      throw InputError(fmt::format("{}: the gzip stream holds {} bytes of voxels, expected {} as the header declares",
+                                   place, found, declared));
+  }
   // One byte more also makes zlib check the length and checksum at the end of the stream.
   if (reader.read(std::span(scratch).first(1)) > 0)
     throw InputError(fmt::format("{}: the gzip stream holds more than the {} bytes of voxels that the header declares",

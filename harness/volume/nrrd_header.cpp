@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::int64_t kMaximumSize = std::numeric_limits<int>::max();
 constexpr double kMaximumSpacing = 1e9;
+constexpr std::size_t kMaximumSkippedText = 1 << 20;
 
 struct TypeSpelling {
   std::string_view name;
@@ -188,20 +189,20 @@ void locateData(const NrrdFields& fields, const std::filesystem::path& path, Nrr
   header.dataFile = path.parent_path() / *named;
 }
 
-/// Offset after `count` more lines of a file.
+/// Offset after `count` more lines of a file: text before the voxels, not a terabyte of it.
 std::uint64_t skipLines(const std::filesystem::path& path, std::uint64_t offset, std::int64_t count) {
   std::ifstream file(path, std::ios::binary);
   file.seekg(static_cast<std::streamoff>(offset));
-  std::array<char, 16384> block;
-  while (count > 0 && file) {
-    file.read(block.data(), block.size());
-    const auto end = block.begin() + file.gcount();
-    for (auto c = block.begin(); c != end && count > 0; ++c, ++offset)
-      if (*c == '\n') --count;
-  }
+  std::string text(kMaximumSkippedText, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  std::size_t at = 0;
+  for (; count > 0 && at < text.size(); ++at)
+    if (text[at] == '\n') --count;
   if (count > 0)
-    throw InputError(fmt::format("{}: field \"line skip\": {} more lines than the file has", path.string(), count));
-  return offset;
+    throw InputError(fmt::format("{}: field \"line skip\": {} more lines than there are in {} bytes", path.string(),
+                                 count, text.size()));
+  return offset + at;
 }
 
 std::int64_t readSkip(const NrrdFields& fields, const std::string& name, std::int64_t minimum) {

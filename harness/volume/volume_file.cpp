@@ -65,8 +65,7 @@ std::shared_ptr<const Volume> loadTimeSeries(const std::vector<fs::path>& paths,
     if (!first) {
       first = step;
       checkedVoxelBytes(path.string(), step->grid(), step->type(), static_cast<int>(paths.size()), maximumBytes);
-      voxels = allocateVoxels(path.string(), step->voxels().size() * paths.size());
-      voxels.clear();
+      voxels = reserveVoxels(path.string(), step->voxels().size() * paths.size());
     }
     const bool alike = step->timeSteps() == 1 && step->type() == first->type() &&
                        step->grid().dims == first->grid().dims && step->grid().spacingMm == first->grid().spacingMm;

@@ -42,11 +42,19 @@ std::uint64_t checkedVoxelBytes(const std::string& place, const Grid& grid, Scal
 }
 
 std::vector<std::byte> allocateVoxels(const std::string& place, std::uint64_t count) {
+  std::vector<std::byte> voxels = reserveVoxels(place, count);
+  voxels.resize(count);
+  return voxels;
+}
+
+std::vector<std::byte> reserveVoxels(const std::string& place, std::uint64_t count) {
+  std::vector<std::byte> voxels;
   try {
-    return std::vector<std::byte>(count);
+    voxels.reserve(count);
   } catch (const std::exception&) { // bad_alloc or length_error
     throw InputError(fmt::format("{}: no memory for {} bytes of voxels", place, count));
   }
+  return voxels;
 }
 
 std::vector<std::byte> readVoxels(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t count) {

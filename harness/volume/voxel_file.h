@@ -23,6 +23,10 @@ std::uint64_t checkedVoxelBytes(const std::string& place, const Grid& grid, Scal
 /// `count` bytes of zero. Throws InputError, prefixed with `place`, if there isn't the memory.
 std::vector<std::byte> allocateVoxels(const std::string& place, std::uint64_t count);
 
+/// Empty, with room for `count` bytes, which take memory only once they are there: for counts that a file claims and
+/// may not keep. Throws InputError as above.
+std::vector<std::byte> reserveVoxels(const std::string& place, std::uint64_t count);
+
 /// Bytes [offset, offset + count) of a file. Throws InputError if they can't be read.
 std::vector<std::byte> readVoxels(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t count);
 

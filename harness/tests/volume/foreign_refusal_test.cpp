@@ -4,34 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdint>
 #include <fstream>
-#include <sys/resource.h>
 
 namespace volmark::test {
 namespace {
 
 constexpr std::uint64_t kLimit = std::uint64_t(1) << 32;
-
-/// Refusing takes neither time nor memory.
-class Refusals : public VolumeFiles {
-protected:
-  Refusals() : m_begin(std::chrono::steady_clock::now()), m_memory(peakKiB()) {}
-  ~Refusals() override {
-    EXPECT_LT(std::chrono::steady_clock::now() - m_begin, std::chrono::seconds(1));
-    EXPECT_LT(peakKiB() - m_memory, 64 * 1024);
-  }
-
-private:
-  static long peakKiB() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return usage.ru_maxrss;
-  }
-  std::chrono::steady_clock::time_point m_begin;
-  long m_memory;
-};
 
 // --- MetaImage -------------------------------------------------------------------------------------------------
 

@@ -96,6 +96,30 @@ TEST_F(Meshes, BadFilesAreOneLine) {
     expectInputError([&] { readOff(write("lie.off", lie.first), kNoLimit); }, lie.second);
 }
 
+class MeshMemory : public Refusals {};
+
+// Sixteen gigabytes of zeros that the header, or a comment, leaves behind it.
+TEST_F(MeshMemory, GrowsWithThePoints) {
+  const std::uintmax_t length = std::uintmax_t(1) << 34;
+  expectInputError([&] { readOff(writeSparse("a.off", "", length), kNoLimit); }, "at most 100 characters");
+  expectInputError([&] { readOff(writeSparse("b.off", "OFF\n4 4 0\n", length), kNoLimit); }, "coordinate: found");
+  expectInputError([&] { readOff(writeSparse("c.off", "OFF # ", length), kNoLimit); }, "a line of more than 65536");
+}
+
+// Whatever character is the first of the second block that is read.
+TEST_F(Meshes, WordsMayLieAcrossBlocks) {
+  const std::string text = tetrahedron();
+  for (std::size_t place = 0; place <= text.size(); ++place) {
+    std::string comments;
+    for (std::size_t left = 256 * 1024 - place; left > 0; left = 256 * 1024 - place - comments.size())
+      comments += std::string(std::min<std::size_t>(left, 60'000) - 1, '#') + "\n";
+    const Mesh mesh = readOff(write("a.off", comments + text), kNoLimit);
+    ASSERT_EQ(mesh.points.size(), 4u);
+    EXPECT_EQ(mesh.points[3], glm::vec3(0, 0, 1));
+    EXPECT_EQ(mesh.triangles[3], glm::uvec3(1, 2, 3));
+  }
+}
+
 TEST_F(Meshes, DistancesAreThoseOfASphere) {
   NEEDS_OPENVDB();
   const double radius = 10;

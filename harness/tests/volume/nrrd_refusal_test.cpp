@@ -1,4 +1,5 @@
 // Truncated, lying and malicious NRRD files: each is one InputError, before memory of the declared size is asked for.
+#include "volume/gzip_reader.h"
 #include "volume/nrrd.h"
 #include "volume/volume_files.h"
 
@@ -9,6 +10,7 @@
 #include <ostream>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace volmark::test {
 namespace {
@@ -60,7 +62,7 @@ std::vector<Case> cases() {
       {"HugeByteSkipOfGzip", header("2 2 2", "byte skip: 9223372036854775807\n", "gzip"), gzip, "more than"},
       {"ByteSkipBeyondStream", header("2 2 2", "byte skip: 100\n", "gzip"), gzip, "ends within the 100 bytes to skip"},
       {"NegativeByteSkip", header("2 2 2", "byte skip: -2\n"), "abcdefgh", "field \"byte skip\": found \"-2\""},
-      {"TooManyLines", header("2 2 2", "line skip: 9\n"), "abcd\nfgh", "more lines than the file has"},
+      {"TooManyLines", header("2 2 2", "line skip: 9\n"), "abcd\nfgh", "more lines than there are in 8 bytes"},
       {"TwoDimensions", "type: uint8\ndimension: 2\nsizes: 2 2\nencoding: raw\n", "abcd",
        "field \"dimension\": found \"2\""},
       {"ManyDimensions", "type: uint8\ndimension: 999999999999\nsizes: 2 2\nencoding: raw\n", "",
@@ -114,7 +116,34 @@ TEST_P(NrrdRefusal, IsOneQuickLine) {
 INSTANTIATE_TEST_SUITE_P(Files, NrrdRefusal, testing::ValuesIn(cases()),
                          [](const auto& test) { return test.param.name; });
 
+class NrrdMemory : public Refusals {};
+
+// 3 GB are declared, and 3 MB of gzip could hold them.
+TEST_F(NrrdMemory, GrowsWithWhatTheStreamHolds) {
+  const std::string lie = "NRRD0004\n" + header("2048 2048 700", "", "gzip") + "\n";
+  expectInputError([&] { loadNrrd(write("noise.nrrd", lie + std::string(3'000'000, 'x')), kLimit); }, "damaged gzip");
+  expectInputError(
+      [&] { loadNrrd(writeSparse("short.nrrd", lie + gzipped(std::string(5'000'000, 'x')), 4'000'000), kLimit); },
+      "damaged gzip");
+}
+
+// A terabyte of zeros without a line's end.
+TEST_F(NrrdMemory, LinesAreLookedForInText) {
+  const std::string lines = "NRRD0004\n" + header("2 2 2", "line skip: 1\n") + "\n";
+  expectInputError([&] { loadNrrd(writeSparse("endless.nrrd", lines, std::uintmax_t(1) << 40), kLimit); },
+                   "field \"line skip\": 1 more lines than there are in 1048576 bytes");
+}
+
 class NrrdFile : public VolumeFiles {};
+
+// A disk that gives up in the middle.
+TEST_F(NrrdFile, GzipThatCannotBeReadIsRefused) {
+  ::alarm(20);                            // reading on and on is the error
+  GzipReader reader("/proc/self/mem", 0); // no process can read its address 0
+  std::vector<std::byte> bytes(10);
+  expectInputError([&] { reader.read(bytes); }, "/proc/self/mem: the gzip stream is cut off");
+  ::alarm(0);
+}
 
 TEST_F(NrrdFile, EveryPrefixIsRefused) {
   const std::string whole = "NRRD0004\n" + header("2 2 2", "spacings: 1 1 1\n", "gzip") + "\n" + gzipped("abcdefgh");

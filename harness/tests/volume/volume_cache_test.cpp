@@ -152,6 +152,20 @@ TEST_F(TimeSeries, StepsOfAnotherSizeAreRefused) {
       "b.nrrd: its size, spacing, type or time steps are not those of a.nrrd");
 }
 
+class TimeSeriesMemory : public Refusals {};
+
+// 3 GB by the first file, nothing in the second.
+TEST_F(TimeSeriesMemory, GrowsWithTheSteps) {
+  const auto first = writeSparse("a.nrrd",
+                                 "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 256 256 64\nencoding: raw\n"
+                                 "byte skip: -1\n\n",
+                                 (std::uintmax_t(1) << 22) + 200);
+  const auto second = write("b.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n\nx");
+  std::vector<fs::path> steps(800, second);
+  steps.front() = first;
+  expectInputError([&] { loadTimeSeries(steps, kNoLimit); }, "b.nrrd: its size, spacing, type or time steps");
+}
+
 TEST_F(TimeSeries, TheLimitIsForAllOfThem) {
   expectInputError(
       [&] {

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <sys/resource.h>
 #include <vector>
 
 namespace volmark::test {
@@ -40,6 +41,42 @@ protected:
 
 private:
   std::filesystem::path m_folder;
+};
+
+/// Refusing takes neither time nor memory, here and in child processes. Other work on the machine doesn't count.
+class Refusals : public VolumeFiles {
+protected:
+  Refusals() : m_seconds(seconds()), m_memory(usage(RUSAGE_SELF).ru_maxrss) {}
+  ~Refusals() override {
+    EXPECT_LT(seconds() - m_seconds, 1);
+    EXPECT_LT(usage(RUSAGE_SELF).ru_maxrss - m_memory, kMoreKiB);
+    EXPECT_LT(usage(RUSAGE_CHILDREN).ru_maxrss - m_memory, kMoreKiB);
+  }
+  /// A file that begins so and goes on with zeros, which take no disk space, up to `length`.
+  std::filesystem::path writeSparse(const std::string& name, const std::string& start, std::uintmax_t length) const {
+    const std::filesystem::path path = write(name, start);
+    std::filesystem::resize_file(path, length);
+    return path;
+  }
+
+private:
+  static constexpr long kMoreKiB = 64 * 1024;
+
+  static rusage usage(decltype(RUSAGE_SELF) who) {
+    rusage result{};
+    getrusage(who, &result);
+    return result;
+  }
+  /// Of processors.
+  static double seconds() {
+    double sum = 0;
+    for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN})
+      for (const timeval& time : {usage(who).ru_utime, usage(who).ru_stime})
+        sum += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    return sum;
+  }
+  double m_seconds;
+  long m_memory;
 };
 
 /// The scalars' bytes in one byte order.

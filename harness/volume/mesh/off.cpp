@@ -17,58 +17,77 @@ namespace {
 
 constexpr std::uint64_t kLeastBytesPerItem = 4; // "0 0\n": what a point or a face takes at least
 constexpr std::int64_t kMostCorners = 1000;
+constexpr std::size_t kBlockBytes = 256 * 1024;
+constexpr std::size_t kLongestWord = 100;
+constexpr std::size_t kLongestLine = 64 * 1024;
 
-/// The file's words, comments left out.
+/// The file's words, comments left out. Read piece by piece: a file may be longer than memory.
 class Words {
 public:
-  explicit Words(const std::filesystem::path& path) : m_place(path.string()), m_text(fileLength(path), '\0') {
-    std::ifstream file(path, std::ios::binary);
-    file.read(m_text.data(), static_cast<std::streamsize>(m_text.size()));
-    if (!file) throw InputError(fmt::format("{}: can't be read", m_place));
+  explicit Words(const std::filesystem::path& path)
+      : m_place(path.string()), m_bytes(fileLength(path)), m_file(path, std::ios::binary) {
+    if (!m_file) throw InputError(fmt::format("{}: can't be opened", m_place));
   }
 
-  std::string_view next(const char* what) {
+  /// Valid until the next one is read.
+  const std::string& next(const char* what) {
     skipSpace();
-    const std::size_t begin = m_at;
-    while (m_at < m_text.size() && !isSpace(m_text[m_at]))
-      ++m_at;
-    if (begin == m_at) throw InputError(fmt::format("{}: the file ends before {}", m_place, what));
-    return std::string_view(m_text).substr(begin, m_at - begin);
+    m_word.clear();
+    for (; !ended() && !isSpace(here()); ++m_at) {
+      m_word += here();
+      if (m_word.size() > kLongestWord) refuse(what, m_word, fmt::format("at most {} characters", kLongestWord));
+    }
+    if (m_word.empty()) throw InputError(fmt::format("{}: the file ends before {}", m_place, what));
+    return m_word;
   }
   std::int64_t integer(const char* what, std::int64_t minimum, std::int64_t maximum) {
-    const std::string_view word = next(what);
+    const std::string& word = next(what);
     const auto value = parseInteger(word, minimum, maximum);
     if (!value) refuse(what, word, fmt::format("a whole number from {} to {}", minimum, maximum));
     return *value;
   }
   float number(const char* what) {
-    const std::string_view word = next(what);
+    const std::string& word = next(what);
     const auto value = parseNumber(word);
     if (!value || !(std::abs(*value) < 1e9)) refuse(what, word, "a number within 1e9");
     return static_cast<float>(*value);
   }
   /// Colours may follow on the same line.
   void skipLine() {
-    while (m_at < m_text.size() && m_text[m_at] != '\n')
-      ++m_at;
+    for (std::size_t skipped = 0; !ended() && here() != '\n'; ++m_at)
+      if (++skipped > kLongestLine)
+        throw InputError(fmt::format("{}: a line of more than {} characters", m_place, kLongestLine));
   }
-  std::uint64_t bytes() const { return m_text.size(); }
+  std::uint64_t bytes() const { return m_bytes; }
   [[noreturn]] void refuse(std::string_view what, std::string_view found, std::string_view allowed) const {
     throw InputError(fmt::format("{}: {}: found {}, allowed: {}", m_place, what, shown(found), allowed));
   }
 
 private:
   static bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+  char here() const { return m_block[m_at]; }
+  /// Whether there is no character left; otherwise the next one is in the block.
+  bool ended() {
+    if (m_at < m_filled) return false;
+    m_file.read(m_block.data(), static_cast<std::streamsize>(m_block.size()));
+    m_filled = static_cast<std::size_t>(m_file.gcount());
+    m_at = 0;
+    return m_filled == 0;
+  }
   void skipSpace() {
-    for (; m_at < m_text.size(); ++m_at) {
-      if (m_text[m_at] == '#') skipLine();
-      if (m_at == m_text.size() || !isSpace(m_text[m_at])) return;
+    for (; !ended(); ++m_at) {
+      if (here() == '#') skipLine();
+      if (ended() || !isSpace(here())) return;
     }
   }
 
   std::string m_place;
-  std::string m_text;
+  std::uint64_t m_bytes;
+  std::ifstream m_file;
+  std::vector<char> m_block = std::vector<char>(kBlockBytes);
+  std::size_t m_filled = 0;
   std::size_t m_at = 0;
+  std::string m_word;
 };
 
 } // namespace
@@ -78,7 +97,7 @@ Mesh readOff(const std::filesystem::path& path, std::uint64_t maximumBytes) {
     throw InputError(
         fmt::format("{}: found {} bytes of text, allowed: {}", path.string(), fileLength(path), 8 * maximumBytes));
   Words words(path);
-  const std::string_view magic = words.next("\"OFF\"");
+  const std::string& magic = words.next("\"OFF\"");
   if (magic != "OFF" && magic != "COFF") words.refuse("not an OFF file: its start", magic, "OFF, COFF");
   // No more of anything than the text has room for.
   const auto most =
