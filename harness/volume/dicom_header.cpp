@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t kPreambleBytes = 128;
 constexpr std::uint32_t kUndefinedLength = 0xffffffff;
 constexpr int kDeepestSequence = 16;
-constexpr int kMostElements = 100'000;
+constexpr int kMostElements = 100'000;       // before the pixels, in sequences too: each costs a system call
 constexpr std::uint32_t kLongestValue = 256; // of the elements that are looked at
 
 constexpr std::uint32_t tag(std::uint32_t group, std::uint32_t element) {
@@ -39,8 +39,15 @@ constexpr std::uint32_t kSequenceEnd = tag(0xfffe, 0xe0dd);
 
 const std::string kImplicitLittle = "1.2.840.10008.1.2";
 const std::string kExplicitLittle = "1.2.840.10008.1.2.1";
-const std::string kDeflated = "1.2.840.10008.1.2.1.99";
 const std::string kExplicitBig = "1.2.840.10008.1.2.2";
+/// JPEG, JPEG lossless, JPEG-LS, JPEG 2000 (each lossless or not) and run lengths: what gdcm decodes.
+const std::set<std::string> kCompressed = {"1.2.840.10008.1.2.4.50", "1.2.840.10008.1.2.4.51", "1.2.840.10008.1.2.4.57",
+                                           "1.2.840.10008.1.2.4.70", "1.2.840.10008.1.2.4.80", "1.2.840.10008.1.2.4.81",
+                                           "1.2.840.10008.1.2.4.90", "1.2.840.10008.1.2.4.91", "1.2.840.10008.1.2.5"};
+/// The most bytes that a compressed byte may stand for in a slice of more than kEasyBytes: an even slice takes
+/// next to nothing, but not a large one.
+constexpr std::uint64_t kMaximumRatio = 1000;
+constexpr std::uint64_t kEasyBytes = 64u << 20;
 
 struct Element {
   std::uint32_t tag = 0;
@@ -59,8 +66,7 @@ public:
   std::string series;
 
   void run() {
-    for (int i = 0;; ++i) {
-      if (i == kMostElements) fail(fmt::format("more than {} elements before the pixels", kMostElements));
+    for (;;) {
       if (m_position >= m_length) fail("there are no pixels (7FE0,0010)");
       const std::uint64_t start = m_position;
       Element element = next();
@@ -100,6 +106,7 @@ private:
   }
 
   Element next() {
+    if (++m_elements > kMostElements) fail(fmt::format("more than {} elements before the pixels", kMostElements));
     const auto head = bytes<4>();
     Element element;
     element.tag = tag(number16(head[0], head[1]), number16(head[2], head[3]));
@@ -166,9 +173,16 @@ private:
     }
   }
 
+  bool isPlain() const {
+    return m_syntax == kImplicitLittle || m_syntax == kExplicitLittle || m_syntax == kExplicitBig;
+  }
+
   void enterData() {
     m_inData = true;
-    if (m_syntax == kDeflated) fail("the deflated transfer syntax is not read; decompress it with another tool");
+    if (!isPlain() && !kCompressed.contains(m_syntax))
+      fail(fmt::format("found the transfer syntax {}, allowed: uncompressed, JPEG, JPEG-LS, JPEG 2000, RLE; convert it "
+                       "with another tool",
+                       shown(m_syntax)));
     m_explicit = m_syntax != kImplicitLittle;
     m_bigEndian = m_syntax == kExplicitBig;
   }
@@ -177,7 +191,7 @@ private:
   void skipSequence(const Element& sequence, int depth) {
     if (depth == kDeepestSequence) fail(fmt::format("sequences more than {} deep", kDeepestSequence));
     if (sequence.length != kUndefinedLength) return skip(sequence);
-    for (int i = 0; i < kMostElements; ++i) {
+    for (;;) {
       const Element item = next();
       if (item.tag == kSequenceEnd) return;
       if (item.tag != kItem) fail("a sequence holds something other than items");
@@ -186,10 +200,9 @@ private:
       else
         skipItem(depth);
     }
-    fail(fmt::format("a sequence of more than {} items", kMostElements));
   }
   void skipItem(int depth) {
-    for (int i = 0; i < kMostElements; ++i) {
+    for (;;) {
       const Element element = next();
       if (element.tag == kItemEnd) return;
       if (element.length == kUndefinedLength)
@@ -197,7 +210,6 @@ private:
       else
         skip(element);
     }
-    fail(fmt::format("an item of more than {} elements", kMostElements));
   }
 
   void checkPixels(const Element& pixels) {
@@ -208,8 +220,7 @@ private:
     if (m_bits != 8 && m_bits != 16 && m_bits != 32)
       fail(fmt::format("found {} bits allocated, allowed: 8, 16, 32", m_bits));
     slice.scalarBytes = static_cast<std::size_t>(m_bits) / 8;
-    const bool plain = m_syntax == kImplicitLittle || m_syntax == kExplicitLittle || m_syntax == kExplicitBig;
-    if (!plain) return; // compressed, in fragments
+    if (!isPlain()) return checkFragments(pixels);
     const std::uint64_t padded = (slice.bytes() + 1) / 2 * 2;
     if (pixels.length != slice.bytes() && pixels.length != padded)
       fail(fmt::format("found {} bytes of pixels, expected {} for {} x {}", pixels.length, slice.bytes(), slice.dims.x,
@@ -217,8 +228,19 @@ private:
     skip(pixels);
   }
 
+  /// Compressed pixels: a table of offsets, then pieces, as a sequence.
+  void checkFragments(const Element& pixels) {
+    if (pixels.length != kUndefinedLength) fail("compressed pixels that are not in pieces");
+    const std::uint64_t start = m_position;
+    skipSequence(pixels, 0);
+    const std::uint64_t found = m_position - start;
+    if (slice.bytes() > std::max(kEasyBytes, found * kMaximumRatio))
+      fail(fmt::format("found {} bytes of compressed pixels, too few for {} x {}", found, slice.dims.x, slice.dims.y));
+  }
+
   std::string m_place;
   std::ifstream m_file;
+  int m_elements = 0;
   std::uint64_t m_length;
   std::uint64_t m_position;
   bool m_explicit = true;

@@ -44,7 +44,7 @@ struct DicomClaim {
 /// Whether the file starts as DICOM files do ("DICM" after 128 bytes).
 bool isDicom(const std::filesystem::path& path);
 /// A grey-scale picture in one frame, uncompressed or with the compressions that gdcm reads. Sequences are skipped, at
-/// most 16 deep.
+/// most 16 deep; pieces of compressed pixels are held against the file's length.
 DicomClaim checkDicom(const std::filesystem::path& path, std::uint64_t maximumBytes);
 
 /// Throws InputError, prefixed with `place`, if the claim is empty, overflows or is over the limit.

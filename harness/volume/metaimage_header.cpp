@@ -30,6 +30,10 @@ public:
       if (equals == std::string_view::npos)
         throw InputError(fmt::format("{}: not a MetaImage: header line {}, allowed: key = value", m_file, shown(line)));
       const std::string key(trimmed(line.substr(0, equals)));
+      // The library takes a colon for an equals sign and would read another header than this one.
+      if (key.find(':') != std::string::npos)
+        throw InputError(
+            fmt::format("{}: header line {}, allowed: key = value, without a colon in the key", m_file, shown(line)));
       if (!m_fields.emplace(key, trimmed(line.substr(equals + 1))).second) refuse(key, "twice", "once");
       if (key != "ElementDataFile") continue;
       m_bytes = begin;
@@ -93,10 +97,14 @@ void readSizes(const Header& header, FileClaim& claim) {
   }
 }
 
+bool isLocal(const Header& header) {
+  return lowerCase(header.text("ElementDataFile")) == "local";
+}
+
 /// Where the voxels are: the header's own file if they are local.
 std::filesystem::path dataFileOf(const Header& header, const std::filesystem::path& path) {
   const std::string named = header.text("ElementDataFile");
-  if (lowerCase(named) == "local") return path;
+  if (isLocal(header)) return path;
   if (named.starts_with("LIST") || named.find('%') != std::string::npos)
     header.refuse("ElementDataFile", named, "LOCAL or one file name; lists and patterns of files are not read");
   return path.parent_path() / named;
@@ -120,14 +128,14 @@ FileClaim checkMetaImage(const std::filesystem::path& path, std::uint64_t maximu
 
   const std::filesystem::path file = dataFileOf(header, path);
   const std::uint64_t length = fileLength(file);
-  std::uint64_t offset = file == path ? header.bytes() : 0;
+  std::uint64_t offset = isLocal(header) ? header.bytes() : 0;
   const std::int64_t skip = header.text("HeaderSize", "0") == "0" || header.text("HeaderSize").empty()
                                 ? 0
                                 : header.integer("HeaderSize", -1, std::numeric_limits<std::int64_t>::max());
   if (skip < 0)
     offset = length - std::min(length, claim.bytes()); // the voxels are the end of the file
-  else
-    offset += std::min<std::uint64_t>(static_cast<std::uint64_t>(skip), length);
+  else if (skip > 0)
+    offset = static_cast<std::uint64_t>(skip); // from the start of the file, also of the header's own
   const std::uint64_t available = length - std::min(length, offset);
   if (!header.isTrue("CompressedData")) {
     if (available != claim.bytes())

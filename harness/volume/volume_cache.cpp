@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Also to be raised when a reader changes what it makes of the same file.
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 constexpr std::size_t kHeadBytes = 4096; // a page, so that voxels are aligned
 constexpr double kDefaultGib = 32;
 constexpr std::uint64_t kLeastBytes = 1u << 20;

@@ -1,4 +1,5 @@
 // Lying, truncated and malicious headers of the formats that ITK reads: one line, before ITK sees the file.
+#include "volume/dicom_bytes.h"
 #include "volume/file_claims.h"
 #include "volume/volume_files.h"
 
@@ -54,6 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Lie{"LOCAL", "/dev/zero", "not a regular file"},
                     Lie{"NDims = 3", "NDims = 3\nHeaderSize = 99999999", "found 0 bytes of voxels"},
                     Lie{"NDims = 3\n", "NDims = 3\nNDims = 3\n", "NDims: found \"twice\""},
+                    Lie{"NDims = 3", "NDims = 3\nDimSize: 9 9 9 =", "header line \"DimSize: 9 9 9 =\""},
                     Lie{"NDims = 3", "noise", "not a MetaImage: header line \"noise\""},
                     Lie{"CompressedData = False", "CompressedData = True\nCompressedDataSize = 999999",
                         "CompressedDataSize: found \"999999\", allowed: at most the 48 bytes"},
@@ -155,48 +157,6 @@ INSTANTIATE_TEST_SUITE_P(All, VtkLies,
 
 // --- DICOM -----------------------------------------------------------------------------------------------------
 
-/// Explicit little endian elements after the preamble.
-class Dicom {
-public:
-  std::string bytes = std::string(128, '\0') + "DICM";
-
-  Dicom& element(std::uint32_t tag, const char* type, const std::string& value) {
-    number16(tag >> 16);
-    number16(tag & 0xffff);
-    bytes += type;
-    number16(static_cast<std::uint32_t>(value.size()));
-    bytes += value;
-    return *this;
-  }
-  Dicom& longElement(std::uint32_t tag, const char* type, std::uint32_t length, const std::string& value) {
-    number16(tag >> 16);
-    number16(tag & 0xffff);
-    bytes += type;
-    number16(0);
-    number16(length & 0xffff);
-    number16(length >> 16);
-    bytes += value;
-    return *this;
-  }
-  static std::string word(std::uint32_t value) {
-    return {static_cast<char>(value & 0xff), static_cast<char>(value >> 8 & 0xff)};
-  }
-
-private:
-  void number16(std::uint32_t value) { bytes += word(value); }
-};
-
-Dicom slice() {
-  Dicom dicom;
-  dicom.element(0x00020010, "UI", "1.2.840.10008.1.2.1\0")
-      .element(0x0020000e, "UI", "1.2.3.4\0")
-      .element(0x00280002, "US", Dicom::word(1))
-      .element(0x00280010, "US", Dicom::word(3))
-      .element(0x00280011, "US", Dicom::word(4))
-      .element(0x00280100, "US", Dicom::word(16));
-  return dicom;
-}
-
 TEST_F(ForeignRefusals, DicomThatLies) {
   const auto refused = [&](const Dicom& dicom, const std::string& says) {
     SCOPED_TRACE(says);
@@ -222,13 +182,54 @@ TEST_F(ForeignRefusals, DicomThatLies) {
           "found 24 bytes of pixels, expected 524280");
   Dicom deep = slice();
   for (int i = 0; i < 40; ++i) {
-    deep.longElement(0x00081115, "SQ", 0xffffffff, "");
-    deep.bytes += std::string("\xfe\xff\x00\xe0\xff\xff\xff\xff", 8);
+    deep.longElement(0x00081115, "SQ", Dicom::kOpen, "");
+    deep.bytes += Dicom::kOpenItem;
   }
   refused(deep, "sequences more than 16 deep");
   Dicom deflated;
   deflated.element(0x00020010, "UI", "1.2.840.10008.1.2.1.99").element(0x0020000e, "UI", "1.2");
-  refused(deflated, "deflated");
+  refused(deflated, "found the transfer syntax \"1.2.840.10008.1.2.1.99\", allowed: uncompressed, JPEG");
+}
+
+TEST_F(ForeignRefusals, DicomOfManySmallElements) {
+  Dicom many = slice();
+  many.longElement(0x00081115, "SQ", Dicom::kOpen, "");
+  for (int item = 0; item < 20; ++item) {
+    many.bytes += Dicom::kOpenItem;
+    for (int i = 0; i < 20'000; ++i)
+      many.element(0x00089999, "LO", "");
+    many.bytes += Dicom::kItemEnd;
+  }
+  many.bytes += Dicom::kSequenceEnd;
+  many.longElement(0x7fe00010, "OW", 24, std::string(24, '\1'));
+  expectInputError([&] { checkDicom(write("many.dcm", many.bytes), kLimit); }, "more than 100000 elements");
+}
+
+TEST_F(ForeignRefusals, CompressedDicomThatLies) {
+  const auto compressed = [](int side, std::uint32_t length, const std::string& pieces) {
+    Dicom dicom;
+    dicom.element(0x00020010, "UI", "1.2.840.10008.1.2.4.70")
+        .element(0x00280010, "US", Dicom::word(static_cast<std::uint32_t>(side)))
+        .element(0x00280011, "US", Dicom::word(static_cast<std::uint32_t>(side)))
+        .element(0x00280100, "US", Dicom::word(16))
+        .longElement(0x7fe00010, "OB", length, pieces);
+    return dicom.bytes;
+  };
+  const auto refused = [&](const std::string& bytes, const std::string& says) {
+    SCOPED_TRACE(says);
+    expectInputError([&] { checkDicom(write("lie.dcm", bytes), kLimit); }, says);
+  };
+  const std::string pieces = Dicom::item(0, "") + Dicom::item(4, "abcd");
+  EXPECT_EQ(
+      checkDicom(write("whole.dcm", compressed(512, Dicom::kOpen, pieces + Dicom::kSequenceEnd)), kLimit).slice.dims.x,
+      512);
+  refused(compressed(512, 20, pieces), "compressed pixels that are not in pieces");
+  refused(compressed(512, Dicom::kOpen, pieces), "the file ends within an element");
+  refused(compressed(512, Dicom::kOpen, Dicom::item(0xfffffff0, "abcd")),
+          "claims 4294967280 bytes, more than the file has");
+  refused(compressed(512, Dicom::kOpen, pieces + "rubbish, not an item"), "something other than items");
+  // 3 GiB of 32 bytes.
+  refused(compressed(40'000, Dicom::kOpen, pieces + Dicom::kSequenceEnd), "too few for 40000 x 40000");
 }
 
 } // namespace

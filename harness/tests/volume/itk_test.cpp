@@ -93,6 +93,45 @@ TEST_F(ItkFiles, MetaImagesComeBack) {
         everyType<itk::MetaImageIO>(ending, compressed, bigEndian);
 }
 
+/// A header without what the writer would add: 4 x 3 x 2 of int16.
+std::string metaHeader(const std::string& lines, const std::string& dataFile) {
+  return "ObjectType = Image\nNDims = 3\nBinaryData = True\nElementSpacing = 1 1 1\n" + lines +
+         "DimSize = 4 3 2\nElementType = MET_SHORT\nElementDataFile = " + dataFile + "\n";
+}
+
+TEST_F(ItkFiles, MetaImageByteOrderHasTwoNames) {
+  const auto values = sampleValues<std::int16_t>(4 * 3 * 2);
+  for (const char* name : {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"})
+    for (const bool bigEndian : {false, true}) {
+      SCOPED_TRACE(fmt::format("{} = {}", name, bigEndian));
+      const auto path =
+          write("order.mha", metaHeader(fmt::format("{} = {}\n", name, bigEndian ? "True" : "False"), "LOCAL") +
+                                 encoded(values, bigEndian));
+      EXPECT_EQ(std::memcmp(loadVolumeFile(path, kNoLimit)->voxels().data(), values.data(), 48), 0);
+    }
+}
+
+// HeaderSize counts from the start of the file with the voxels, be it the header's own; -1: they are its end.
+TEST_F(ItkFiles, MetaImageVoxelsAreWhereHeaderSizeSays) {
+  const auto values = sampleValues<std::int16_t>(4 * 3 * 2);
+  const std::string voxels = encoded(values, false);
+  const auto expectRead = [&](const std::filesystem::path& path) {
+    EXPECT_EQ(std::memcmp(loadVolumeFile(path, kNoLimit)->voxels().data(), values.data(), 48), 0) << path;
+  };
+  for (const std::size_t gap : {0, 1, 7, 300}) {
+    const std::string between(gap, 'x');
+    write("voxels.raw", between + voxels);
+    expectRead(write("apart.mhd", metaHeader(fmt::format("HeaderSize = {}\n", gap), "voxels.raw")));
+    expectRead(write("end.mhd", metaHeader("HeaderSize = -1\n", "voxels.raw")));
+    for (const char* name : {"LOCAL", "local", "own.mha"}) {
+      const auto headerOf = [&](std::size_t size) {
+        return metaHeader(fmt::format("HeaderSize = {:4}\n", size), name);
+      };
+      expectRead(write("own.mha", headerOf(headerOf(0).size() + gap) + between + voxels));
+    }
+  }
+}
+
 TEST_F(ItkFiles, NiftiComesBack) {
   everyType<itk::NiftiImageIO>(".nii", false, false);
   everyType<itk::NiftiImageIO>(".nii.gz", true, false);
@@ -299,7 +338,7 @@ TEST_F(DicomSeries, UnevenDistancesAndTiltAreNoted) {
 TEST_F(DicomSeries, TwoSeriesAreRefused) {
   addSlice(0, {.name = "a", .origin = {0, 0, 0}, .series = "1.2.3"});
   addSlice(1, {.name = "b", .origin = {0, 0, 1}, .series = "1.2.4"});
-  expectRefused("found 2 series: 1.2.3 (1 files), 1.2.4 (1 files)");
+  expectRefused("found 2 series: \"1.2.3\" (1 files), \"1.2.4\" (1 files)");
 }
 
 TEST_F(DicomSeries, TwoSlicesInOnePlaceAreRefused) {

@@ -4,6 +4,8 @@
 
 #include "volmark/error.h"
 #include "volume/file_claims.h"
+#include "volume/header_text.h"
+#include "volume/itk/decode_apart.h"
 #include "volume/orientation.h"
 #include "volume/volume_cache.h"
 #include "volume/voxel_file.h"
@@ -13,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <gdcmTrace.h>
 #include <itkGDCMImageIO.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
@@ -33,13 +34,6 @@ constexpr double kMaximumSpacing = 1e9;
 constexpr double kEvenSpacing = 0.01; ///< largest deviation of a slice distance from their mean, of the mean
 constexpr double kGantryMm = 0.01;    ///< largest shift within the slices' plane that is no tilt
 
-/// What is wrong with a file comes as an exception; the libraries' chatter would tear up the progress line.
-void silenceLibraries() {
-  itk::Object::GlobalWarningDisplayOff();
-  gdcm::Trace::WarningOff();
-  gdcm::Trace::ErrorOff();
-}
-
 /// Runs `action` and turns ITK's and the standard library's exceptions into one line.
 template <class Action> auto reading(const fs::path& path, Action action) {
   try {
@@ -49,6 +43,9 @@ template <class Action> auto reading(const fs::path& path, Action action) {
   } catch (const itk::ExceptionObject& error) {
     std::string text = error.GetDescription();
     std::replace(text.begin(), text.end(), '\n', ' ');
+    // "ITK ERROR: NiftiImageIO(0x55a1aa2ada50): " says nothing to a user.
+    if (const std::size_t address = text.find("): "); text.starts_with("ITK ERROR") && address != std::string::npos)
+      text.erase(0, address + 3);
     throw InputError(fmt::format("{}: {}", path.string(), text.substr(0, 300)));
   } catch (const std::exception& error) {
     throw InputError(fmt::format("{}: {}", path.string(), error.what()));
@@ -140,18 +137,22 @@ Decoded readAll(itk::ImageIOBase& io, const fs::path& path, const FileClaim& cla
   return decoded(io.GetComponentType(), std::move(bytes));
 }
 
-struct Checked {
-  FileClaim claim;
-  itk::ImageIOBase::Pointer io;
-};
-
-Checked checked(const fs::path& path, ItkFormat format, std::uint64_t maximumBytes) {
+FileClaim checkedClaim(const fs::path& path, ItkFormat format, std::uint64_t maximumBytes) {
   switch (format) {
-  case ItkFormat::metaImage: return {checkMetaImage(path, maximumBytes), itk::MetaImageIO::New().GetPointer()};
-  case ItkFormat::nifti: return {checkNifti(path, maximumBytes), itk::NiftiImageIO::New().GetPointer()};
+  case ItkFormat::metaImage: return checkMetaImage(path, maximumBytes);
+  case ItkFormat::nifti: return checkNifti(path, maximumBytes);
   case ItkFormat::vtk: break;
   }
-  return {checkVtk(path, maximumBytes), itk::VTKImageIO::New().GetPointer()};
+  return checkVtk(path, maximumBytes);
+}
+
+itk::ImageIOBase::Pointer readerOf(ItkFormat format) {
+  switch (format) {
+  case ItkFormat::metaImage: return itk::MetaImageIO::New().GetPointer();
+  case ItkFormat::nifti: return itk::NiftiImageIO::New().GetPointer();
+  case ItkFormat::vtk: break;
+  }
+  return itk::VTKImageIO::New().GetPointer();
 }
 
 // --- DICOM series ----------------------------------------------------------------------------------------------
@@ -170,7 +171,8 @@ std::vector<Slice> findSlices(const fs::path& folder, std::uint64_t maximumBytes
   std::uint64_t bytes = 0;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (!entry.is_regular_file() || !isDicom(entry.path())) continue;
+    std::error_code unreachable; // a link to itself
+    if (!entry.is_regular_file(unreachable) || !isDicom(entry.path())) continue;
     const DicomClaim claim = checkDicom(entry.path(), maximumBytes);
     ++series[claim.series];
     bytes += claim.slice.bytes();
@@ -184,7 +186,7 @@ std::vector<Slice> findSlices(const fs::path& folder, std::uint64_t maximumBytes
   if (series.size() > 1) {
     std::string list;
     for (const auto& [name, count] : series)
-      list += fmt::format("{}{} ({} files)", list.empty() ? "" : ", ", name, count);
+      list += fmt::format("{}{} ({} files)", list.empty() ? "" : ", ", shown(name), count);
     throw InputError(fmt::format("{}: found {} series: {}, allowed: one; put each into a folder of its own",
                                  folder.string(), series.size(), list.substr(0, 300)));
   }
@@ -260,10 +262,9 @@ Decoded readSlices(const std::vector<Slice>& slices) {
   return all;
 }
 
-std::shared_ptr<const Volume> decodeFile(const fs::path& path, ItkFormat format, std::uint64_t maximumBytes) {
-  silenceLibraries();
+DecodedVolume decodeFile(const fs::path& path, ItkFormat format, const FileClaim& claim) {
   return reading(path, [&] {
-    const auto [claim, io] = checked(path, format, maximumBytes);
+    const itk::ImageIOBase::Pointer io = readerOf(format);
     io->SetFileName(path.string());
     io->ReadImageInformation();
     Decoded all = readAll(*io, path, claim);
@@ -276,12 +277,12 @@ std::shared_ptr<const Volume> decodeFile(const fs::path& path, ItkFormat format,
       directions[static_cast<int>(axis)] = directionOf(*io, axis);
     }
     all.voxels = turnToPatientAxes(std::move(all.voxels), all.type, claim.timeSteps, directions, grid, notes);
-    return std::make_shared<const Volume>(path.filename().string(), grid, all.type, std::move(all.voxels),
-                                          claim.timeSteps, std::move(notes));
+    return DecodedVolume{path.filename().string(), grid, all.type, claim.timeSteps, std::move(all.voxels),
+                         std::move(notes)};
   });
 }
 
-std::shared_ptr<const Volume> decodeSeries(const fs::path& folder, std::vector<Slice> slices) {
+DecodedVolume decodeSeries(const fs::path& folder, std::vector<Slice> slices) {
   const glm::dvec3 normal = sortAlongNormal(slices);
   std::vector<std::string> notes;
   const double spacing = sliceSpacing(slices, normal, notes);
@@ -294,8 +295,7 @@ std::shared_ptr<const Volume> decodeSeries(const fs::path& folder, std::vector<S
   Decoded all = readSlices(slices);
   if (all.narrowed) notes.push_back("voxels were wider than float32 and were rounded to it");
   all.voxels = turnToPatientAxes(std::move(all.voxels), all.type, 1, directions, grid, notes);
-  return std::make_shared<const Volume>(folder.filename().string(), grid, all.type, std::move(all.voxels), 1,
-                                        std::move(notes));
+  return {folder.filename().string(), grid, all.type, 1, std::move(all.voxels), std::move(notes)};
 }
 
 } // namespace
@@ -303,16 +303,22 @@ std::shared_ptr<const Volume> decodeSeries(const fs::path& folder, std::vector<S
 std::shared_ptr<const Volume> loadWithItk(const fs::path& path, ItkFormat format, std::uint64_t maximumBytes) {
   std::vector<fs::path> sources = {path};
   if (format == ItkFormat::metaImage) sources.push_back(metaImageDataFile(path));
-  return cachedVolume(sources, "itk", maximumBytes, [&] { return decodeFile(path, format, maximumBytes); });
+  return cachedVolume(sources, "itk", maximumBytes, [&] {
+    const FileClaim claim = checkedClaim(path, format, maximumBytes);
+    return decodeApart(path, claim.bytes(), [&] { return decodeFile(path, format, claim); });
+  });
 }
 
 std::shared_ptr<const Volume> loadDicomSeries(const fs::path& folder, std::uint64_t maximumBytes) {
-  silenceLibraries();
-  std::vector<Slice> slices = findSlices(folder, maximumBytes);
+  const std::vector<Slice> slices = findSlices(folder, maximumBytes);
   std::vector<fs::path> sources;
-  for (const Slice& slice : slices)
+  std::uint64_t claimedBytes = 0;
+  for (const Slice& slice : slices) {
     sources.push_back(slice.path);
-  return cachedVolume(sources, "dicom series", maximumBytes, [&] { return decodeSeries(folder, std::move(slices)); });
+    claimedBytes += slice.claim.bytes();
+  }
+  return cachedVolume(sources, "dicom series", maximumBytes,
+                      [&] { return decodeApart(folder, claimedBytes, [&] { return decodeSeries(folder, slices); }); });
 }
 
 } // namespace volmark
