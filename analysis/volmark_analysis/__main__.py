@@ -10,6 +10,7 @@ from pathlib import Path
 
 from . import comparisons, export, microbenchmarks, plots, report, tables
 from .errors import InputError
+from .gate.command import add_command as add_gate_command
 from .load import load_experiment
 from .points import point_results
 
@@ -22,6 +23,7 @@ _EPILOG = """examples:
   python3 -m volmark_analysis compare results/quick --a step=0.5 --b step=1.0
   python3 -m volmark_analysis export results/quick --format github-action-benchmark -o benchmark.json
   python3 -m volmark_analysis bench new.json --old old.json
+  python3 -m volmark_analysis gate --base origin/main
 
 DIR is an experiment folder: the one with experiment.json and runs/. Unusable input gives one line and exit code 2.
 The statistics are defined in harness/README.md, section 6, and at the end of every report."""
@@ -32,14 +34,13 @@ def main(arguments: list[str] | None = None) -> int:
     # Documents of a thousand runs hold few cycles: by default the collector would search them over and over.
     gc.set_threshold(50_000, 20, 100)
     try:
-        options.run(options)
+        return options.run(options) or 0
     except InputError as error:
         print(f"volmark_analysis: {error}", file=sys.stderr)
         return 2
     except BrokenPipeError:  # `| head`
         sys.stderr.close()
         return 0
-    return 0
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -81,6 +82,7 @@ def _parser() -> argparse.ArgumentParser:
                      help="volmark_bench --benchmark_out=FILE --benchmark_out_format=json --benchmark_repetitions=5")
     sub.add_argument("--old", metavar="FILE", type=Path, help="the same of another build: adds the ratio of the medians")
     sub.set_defaults(run=_bench)
+    add_gate_command(commands)
     return parser
 
 

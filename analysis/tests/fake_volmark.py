@@ -1,0 +1,49 @@
+"""Stands for the program in tests of the gate: expands, runs and draws what files beside it say, without a GPU."""
+
+import json
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+
+def side_of(program):
+    """What a build does is in a file beside its program."""
+    import gate_folders
+    return gate_folders.make_side(**json.loads(Path(program).with_name("side.json").read_text()))
+
+
+def run(arguments, config):
+    import gate_folders
+    values = lambda option: [b for a, b in zip(arguments, arguments[1:]) if a == option]  # noqa: E731
+    settings = dict(s.split("=") for s in values("--set"))
+    programs = dict(b.split("=", 1) for b in values("--build"))
+    sides = [side_of(programs[name]) if name in programs else None for name in ("base", "candidate")]
+    chosen = [int(p) for p in values("--points")[0].split(",")] if values("--points") else range(len(config["points"]))
+    points = {config["points"][i]: sides for i in chosen}
+    folder = Path(values("--results")[0]) / config["name"]
+    pairs, seed = int(settings["measure.replicates"]), int(settings["measure.seed"])
+    gate_folders.write_experiment(folder, config["name"], points, pairs, seed)
+    with open(Path(values("--results")[0]).parent / "calls", "a") as file:
+        file.write(f"{folder.parent.name} {config['name']} {pairs} {list(chosen)} {seed} {arguments[0]}\n")
+    return max(side is not None and side["status"] != "completed" for side in sides)
+
+
+def main(program, arguments):
+    config = json.loads(Path(arguments[1]).read_text())
+    if arguments[0] == "expand":
+        for index, technique in enumerate(config["points"]):
+            frames = 2 if "--profile" in arguments else 4
+            print(json.dumps({"index": index, "labels": {"technique": technique}, "config": {"pacing": {"frames": frames}}}))
+        print(f"{len(config['points'])} points", file=sys.stderr)
+        return 0
+    if "exit" in config:
+        print(f"volmark: {config['exit'][1]}", file=sys.stderr)
+        return config["exit"][0]
+    if arguments[0] == "run":
+        return run(["runner " + Path(program).parent.name, *arguments[1:]], config)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], sys.argv[2:]))
