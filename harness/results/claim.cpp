@@ -64,7 +64,8 @@ bool overwrite(int file, const std::string& text) {
          futimens(file, nullptr) == 0;
 }
 
-// Tells processes of one pid apart: in ticks since the machine started. Empty if there is no such process.
+// Tells processes of one pid apart: in ticks since the machine started. Empty if there is no such process, or one that
+// has ended and that nobody has waited for yet.
 std::string startOfProcess(pid_t pid) {
   std::ifstream file(fmt::format("/proc/{}/stat", pid));
   std::string text((std::istreambuf_iterator<char>(file)), {});
@@ -73,7 +74,9 @@ std::string startOfProcess(pid_t pid) {
   if (name == std::string::npos) return "";
   std::istringstream fields(text.substr(name + 1));
   std::string field;
-  for (int i = 0; i < 20; ++i)
+  fields >> field;
+  if (field == "Z" || field == "X") return "";
+  for (int i = 1; i < 20; ++i)
     fields >> field;
   return field;
 }

@@ -55,12 +55,17 @@ WorkerStart startOf(const PendingRun& run, const RunnerOptions& options, const E
 
 } // namespace
 
-Batch::Batch(const Experiment& experiment, const RunnerOptions& options, WorkerPool& pool, std::vector<PendingRun> runs)
+Batch::Batch(const Experiment& experiment, const RunnerOptions& options, WorkerPool& pool,
+             const std::function<bool(const RunIdentity&)>& isDone, std::vector<PendingRun> runs)
     : m_experiment(experiment), m_options(options), m_pool(pool) {
   for (PendingRun& run : runs) {
     auto claim = experiment.claim(run.identity);
     if (!claim) {
       m_elsewhere.push_back(run);
+      continue;
+    }
+    if (isDone(run.identity)) {
+      ++m_doneMeanwhile;
       continue;
     }
     auto member = std::make_unique<Member>();

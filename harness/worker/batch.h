@@ -25,14 +25,17 @@ struct PendingRun {
 
 class Batch {
 public:
-  /// Takes the runs whose claims it gets.
-  Batch(const Experiment& experiment, const RunnerOptions& options, WorkerPool& pool, std::vector<PendingRun> runs);
+  /// Takes the runs whose claims it gets and which nobody has done since they were planned: `isDone` is asked again
+  /// under the claim.
+  Batch(const Experiment& experiment, const RunnerOptions& options, WorkerPool& pool,
+        const std::function<bool(const RunIdentity&)>& isDone, std::vector<PendingRun> runs);
   ~Batch();
 
   /// Prepare, warm up, headline orbits in shuffled turns, breakdown orbits, finish. Stops early when
   /// interruptRequested is set: unfinished runs leave nothing. `advance` gets a share in [0,1] and a text.
   void work(const std::function<void(double, const std::string&)>& advance);
 
+  int doneMeanwhile() const { return m_doneMeanwhile; }
   /// Runs that other processes have claimed.
   const std::vector<PendingRun>& elsewhere() const { return m_elsewhere; }
   /// Runs that memory was too short for beside the others: they are to be worked alone, after this batch.
@@ -66,6 +69,7 @@ private:
   std::uint64_t m_shuffles = 0;
   double m_turnsTaken = 0;
   double m_turnsPlanned = 1;
+  int m_doneMeanwhile = 0;
   std::vector<PendingRun> m_elsewhere;
   std::vector<PendingRun> m_deferred;
 };

@@ -202,8 +202,10 @@ private:
   void work(std::vector<PendingRun> runs) {
     const auto size = static_cast<double>(runs.size());
     const double before = m_done;
-    Batch batch(m_experiment, m_options, m_pool, std::move(runs));
+    const auto done = [this](const RunIdentity& identity) { return isDone(identity); };
+    Batch batch(m_experiment, m_options, m_pool, done, std::move(runs));
     batch.work([&](double share, const std::string& what) { m_progress.advanceTo(before + share * size, what); });
+    m_result.alreadyDone += batch.doneMeanwhile();
     if (!batch.elsewhere().empty()) m_elsewhere.push_back(batch.elsewhere());
     for (const Batch::Ended& ended : batch.ended())
       count(ended);

@@ -1,6 +1,7 @@
 """A grid survives its techniques, kills and interruptions, and repeats nothing."""
 
 import json
+import re
 import signal
 import time
 
@@ -98,6 +99,8 @@ def test_two_processes_share_a_grid(volmark):
     outputs = [process.communicate(timeout=120) for process in processes]
     assert [process.returncode for process in processes] == [0, 0], outputs
     assert len(volmark.runs()) == 6
+    # A run that one has done since the other planned its own is not done again.
+    assert sum(int(re.match(r"(\d+) completed", text)[1]) for text, _ in outputs) == 6, outputs
 
 
 def test_a_grown_grid_keeps_what_is_done(volmark):

@@ -1,6 +1,7 @@
 #include "fixture.h"
 #include "volmark/error.h"
 
+#include <csignal>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -163,6 +164,21 @@ TEST(Claim, ofAProcessThatIsGoneIsTakenOver) {
   writeClaim(file, hostName(), pidThatIsGone());
   EXPECT_TRUE(takeAtOnce(file));
   EXPECT_FALSE(fs::exists(file));
+}
+
+TEST(Claim, ofAProcessThatHasEndedIsTakenOverThoughNobodyWaitedForIt) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "run.claim";
+  const pid_t child = fork();
+  if (child == 0) {
+    ClaimWatch watch;
+    auto claim = Claim::take(file, watch);
+    kill(getpid(), SIGKILL);
+  }
+  siginfo_t ended;
+  waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT); // it stays a zombie
+  EXPECT_TRUE(takeAtOnce(file));
+  waitpid(child, nullptr, 0);
 }
 
 // Process numbers come back: one that started at another time is another process.
