@@ -81,8 +81,8 @@ void keepSample(const Sample& sample, std::vector<Point>& points) {
     const std::uint64_t hash = hashOf(points[i].labels);
     const auto low = static_cast<std::uint32_t>(hash);
     const auto high = static_cast<std::uint32_t>(hash >> 32u);
-    const std::uint64_t rank = std::uint64_t(randomBits(sample.seed, low, high, 0)) << 32u |
-                               randomBits(sample.seed, low, high, 1);
+    const std::uint64_t rank =
+        std::uint64_t(randomBits(sample.seed, low, high, 0)) << 32u | randomBits(sample.seed, low, high, 1);
     ranks.emplace_back(rank, i);
   }
   std::sort(ranks.begin(), ranks.end());

@@ -76,8 +76,10 @@ TEST_F(SelectionTest, ASampleOfAGrownGridKeepsWhatItHad) {
   // grid has are a part of the smaller one's sample.
   const auto sampled = [&](const std::string& values) {
     std::set<std::string> labels;
-    const Scenario scenario = read(std::string(R"("sample": {"count": 8, "seed": 5}, )") + kBlob + R"(, "blocks": [{"axes": {
-      "seed": {"path": "measure.seed", "values": [)" + values + "]}}}]");
+    const Scenario scenario =
+        read(std::string(R"("sample": {"count": 8, "seed": 5}, )") + kBlob + R"(, "blocks": [{"axes": {
+      "seed": {"path": "measure.seed", "values": [)" +
+             values + "]}}}]");
     for (const Point& point : scenario.points)
       labels.insert(point.labels[1].value);
     return labels;
