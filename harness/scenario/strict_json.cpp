@@ -16,10 +16,10 @@ namespace volmark {
 
 namespace {
 
-constexpr std::uintmax_t kMaximumBytes = 16u << 20;
+constexpr std::uintmax_t kMaximumBytes = 4u << 20;
 constexpr int kMaximumDepth = 64;
-/// Ordered objects are searched linearly.
-constexpr std::size_t kMaximumKeys = 4096;
+/// Ordered objects are searched linearly: with more keys a file of the largest size would take many seconds.
+constexpr std::size_t kMaximumKeys = 512;
 /// Bounds from here on are no bounds in an error text.
 constexpr double kUnbounded = 1e300;
 
@@ -83,12 +83,10 @@ private:
 
   void enterKey(const std::string& key) {
     Level& level = m_levels.back();
-    level.key.clear();
-    const std::string here = at(m_place, pointer());
     if (!level.keys.insert(key).second)
-      throw InputError(fmt::format("{}: key \"{}\" stands twice", here, printable(key)));
+      throw InputError(fmt::format("{}: key \"{}\" stands twice", at(m_place, pointer()), printable(key)));
     if (level.keys.size() > kMaximumKeys)
-      throw InputError(fmt::format("{}: too many keys, allowed: {}", here, kMaximumKeys));
+      throw InputError(fmt::format("{}: too many keys, allowed: {}", at(m_place, pointer()), kMaximumKeys));
     level.key = key;
   }
 

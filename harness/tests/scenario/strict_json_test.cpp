@@ -2,6 +2,7 @@
 #include "scenario/strict_json.h"
 #include "volmark/error.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -54,6 +55,18 @@ TEST(ParseJson, LimitsDepthBothWays) {
   EXPECT_NO_THROW(parseOrderedJson("[" + std::string("[],[],") + "[]]", "a.json"));
 }
 
+std::string objectOf(int keys) {
+  std::string text = "{";
+  for (int i = 0; i < keys; ++i)
+    text += fmt::format("{}\"{}\":0", i == 0 ? "" : ",", i);
+  return text + "}";
+}
+
+TEST(ParseJson, LimitsKeysOfEachObject) {
+  EXPECT_NO_THROW(parseOrderedJson("[" + objectOf(512) + "," + objectOf(512) + "]", "a.json"));
+  EXPECT_EQ(parseError("[{},{\"a/b\":" + objectOf(513) + "}]"), "a.json: /1/a~1b: too many keys, allowed: 512");
+}
+
 TEST(ParseJson, KeepsTheOrderOfKeys) {
   const auto json = parseOrderedJson(R"({"z": 1, "a": 2, "m": 3})", "a.json");
   std::string order;
@@ -76,7 +89,7 @@ TEST(ReadJsonFile, RefusesHugeFilesBeforeReadingThem) {
   const auto path = std::filesystem::temp_directory_path() / "volmark_huge.json";
   std::ofstream(path) << "1";
   std::filesystem::resize_file(path, std::uintmax_t(1) << 33);
-  EXPECT_THAT(errorOf([&] { readJsonFile(path); }), HasSubstr("found 8589934592 bytes, allowed: 16777216"));
+  EXPECT_THAT(errorOf([&] { readJsonFile(path); }), HasSubstr("found 8589934592 bytes, allowed: 4194304"));
   std::filesystem::remove(path);
 }
 
