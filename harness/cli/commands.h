@@ -41,6 +41,7 @@ TechniqueCatalogue loadCatalogue();
 
 /// Largest volume that is loaded unless --max-volume-gib says otherwise.
 inline constexpr double kDefaultMaximumGib = 4;
+/// Throws InputError unless it is a size.
 std::uint64_t bytesOfGib(double gib);
 
 } // namespace volmark

@@ -34,12 +34,12 @@ extern "C" void requestInterrupt(int) {
   interruptRequested = true;
 }
 
+/// For `run`, which then ends in order. The other commands have nothing to lose and just end.
 void installSignalHandlers() {
   struct sigaction action {};
   action.sa_handler = requestInterrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
 }
 
 int parseAndRun(int argc, char** argv) {
@@ -74,11 +74,10 @@ int parseAndRun(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 2 && std::string_view(argv[1]) == "worker") {
-    std::signal(SIGPIPE, SIG_IGN);
-    return serveTurns();
-  }
-  installSignalHandlers();
+  const std::string_view command = argc > 1 ? argv[1] : "";
+  std::signal(SIGPIPE, SIG_IGN);
+  if (command == "worker" && argc == 2) return serveTurns();
+  if (command == "run") installSignalHandlers();
   try {
     return parseAndRun(argc, argv);
   } catch (const InputError& error) {

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "volmark/error.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +11,8 @@ namespace volmark {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kMostGib = 1e6;
 
 std::vector<fs::path> splitPaths(const char* text) {
   std::vector<fs::path> result;
@@ -58,6 +61,8 @@ TechniqueCatalogue loadCatalogue() {
 }
 
 std::uint64_t bytesOfGib(double gib) {
+  if (!(gib > 0 && gib <= kMostGib))
+    throw InputError(fmt::format("--max-volume-gib: found {}, allowed: above 0, up to {}", gib, kMostGib));
   return static_cast<std::uint64_t>(gib * 1024 * 1024 * 1024);
 }
 

@@ -45,7 +45,7 @@ SceneLibrary::Entry SceneLibrary::load(const JsonValue& value) const {
   const std::filesystem::path path = m_folder / (name + ".json");
   std::error_code code;
   if (std::filesystem::is_regular_file(path, code)) return {name, readScene(path)};
-  if (std::filesystem::is_directory(name, code)) return {name, sceneForFile(name)};
+  if (std::filesystem::exists(name, code)) return {name, sceneForFile(name)};
   const std::vector<std::string> names = scenesIn(m_folder);
   const std::string nearest = suggestion(name, names);
   value.fail(fmt::format("unknown scene {}{} allowed: {}", shortJson(value.json()), nearest.empty() ? "," : nearest,

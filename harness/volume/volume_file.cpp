@@ -1,6 +1,7 @@
 #include "volume/volume_file.h"
 
 #include "volmark/error.h"
+#include "volume/file_claims.h"
 #include "volume/header_text.h"
 #include "volume/itk_reader.h"
 #include "volume/nrrd.h"
@@ -52,6 +53,9 @@ std::shared_ptr<const Volume> loadVolumeFile(const fs::path& path, std::uint64_t
   std::error_code missing;
   const Loader loader = fs::is_directory(path, missing) ? &loadDicomSeries : loaderOf(path);
   if (loader) return loader(path, maximumBytes);
+  if (fs::is_regular_file(path, missing) && isDicom(path))
+    throw InputError(fmt::format(
+        "{}: a single DICOM file, allowed: the folder with its series, and no other series in it", path.string()));
   throw InputError(fmt::format("{}: found a file name that ends in \"{}\", allowed: {}, a folder with a DICOM series, "
                                "or \"raw\" in a scene file that describes its voxels",
                                path.string(), path.extension().string(), endings()));

@@ -1,7 +1,9 @@
 """volmark info, and volumes in the forms that users have."""
 import gzip
 import json
+import signal
 import struct
+import time
 
 import pytest
 
@@ -94,3 +96,31 @@ def test_a_folder_without_dicom_is_one_line(volmark, itk):
     (volmark.folder / "series").mkdir()
     for name in ("./series", "series/", "series"):
         assert "series: there is no DICOM file" in refused(volmark, "info", name)
+
+
+@pytest.mark.parametrize("name", ["./slice.dcm", "slice.dcm", "./slice", "slice"])
+def test_a_single_dicom_file_names_the_folder_as_what_is_read(volmark, name):
+    (volmark.folder / name).write_bytes(b"\0" * 128 + b"DICM")
+    assert "a single DICOM file, allowed: the folder with its series" in refused(volmark, "info", name)
+
+
+def test_a_file_needs_no_path_to_be_one(volmark):
+    (volmark.folder / "a.vti").write_bytes(b"<VTKFile>")
+    assert 'ends in ".vti", allowed: .nrrd' in refused(volmark, "info", "a.vti")
+    assert "unknown scene" in refused(volmark, "info", "b.vti")
+
+
+@pytest.mark.parametrize("gib", ["-1", "0", "nan", "inf", "1e300"])
+def test_the_limit_is_a_size(volmark, gib):
+    write_nrrd(volmark.folder / "a.nrrd", 0)
+    assert "--max-volume-gib" in refused(volmark, "info", "a.nrrd", "--max-volume-gib", gib)
+    assert "--max-volume-gib" in refused(volmark, "render", "--volume", "a.nrrd", "-o", "a.exr", "--max-volume-gib", gib)
+
+
+@pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM])
+def test_commands_end_when_they_are_told_to(volmark, signal_number):
+    """All but `run` (test_grid.py) have nothing to put in order."""
+    process = volmark.start("render", "--scene", "marschner_lobb", "--reference", "--size", "4096x4096", "-o", "a.exr")
+    time.sleep(0.5)
+    process.send_signal(signal_number)
+    assert process.wait(timeout=20) == -signal_number
