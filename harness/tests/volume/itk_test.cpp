@@ -175,6 +175,68 @@ TEST_F(ItkFiles, NiftiOfTheOtherByteOrderComesBack) {
   expectStored(*loadVolumeFile(write("swapped.nii", bytes), kNoLimit), values, ScalarType::int16);
 }
 
+/// NIfTI-1 with what `change` puts into it, and 4 x 3 x 2 of int16.
+template <class Change> std::string niftiWith(const std::vector<std::int16_t>& values, Change change) {
+  std::string bytes = niftiHeader({4, 3, 2}, 4);
+  change([&]<class T>(std::size_t place, T value) { std::memcpy(bytes.data() + place, &value, sizeof(T)); });
+  return bytes + encoded(values, false);
+}
+
+TEST_F(ItkFiles, NiftiScalingIsApplied) {
+  const auto values = sampleValues<std::int16_t>(4 * 3 * 2);
+  for (const auto& [slope, intercept] : {std::pair(2.0F, -1000.0F), {-0.5F, 0.0F}, {1.0F, 3.0F}, {0.125F, 7.5F}}) {
+    SCOPED_TRACE(fmt::format("{} {}", slope, intercept));
+    const auto volume = loadVolumeFile(write("scaled.nii", niftiWith(values,
+                                                                     [&](auto put) {
+                                                                       put(112, slope);
+                                                                       put(116, intercept);
+                                                                     })),
+                                       kNoLimit);
+    ASSERT_EQ(volume->type(), ScalarType::float32);
+    for (int i = 0; i < 24; ++i)
+      ASSERT_EQ(volume->value(i % 4, i / 4 % 3, i / 12), values[static_cast<std::size_t>(i)] * slope + intercept);
+  }
+  for (const auto& [slope, intercept] : {std::pair(0.0F, 0.0F), {1.0F, 0.0F}}) {
+    SCOPED_TRACE(fmt::format("unscaled {} {}", slope, intercept));
+    const auto volume = loadVolumeFile(write("stored.nii", niftiWith(values,
+                                                                     [&](auto put) {
+                                                                       put(112, slope);
+                                                                       put(116, intercept);
+                                                                     })),
+                                       kNoLimit);
+    ASSERT_EQ(volume->type(), ScalarType::int16);
+    EXPECT_EQ(std::memcmp(volume->voxels().data(), values.data(), 48), 0);
+  }
+}
+
+// The axes (right, back, crown) by the quaternion, by the affine rows, or by both: the same patient. NIfTI's own axes
+// point to the right, the front and the crown.
+TEST_F(ItkFiles, NiftiAxesComeFromEitherForm) {
+  const auto values = sampleValues<std::int16_t>(4 * 3 * 2);
+  const auto withForms = [&](int quaternion, int affine) {
+    return loadVolumeFile(write("forms.nii", niftiWith(values,
+                                                       [&](auto put) {
+                                                         put(76, 1.0F); // qfac
+                                                         put(80, 2.0F);
+                                                         put(252, static_cast<std::int16_t>(quaternion));
+                                                         put(254, static_cast<std::int16_t>(affine));
+                                                         // Half a turn around the crown's axis.
+                                                         if (quaternion > 0) put(264, 1.0F);
+                                                         put(280, -2.0F);
+                                                         put(300, -1.0F);
+                                                         put(320, 1.0F);
+                                                       })),
+                          kNoLimit);
+  };
+  const auto byQuaternion = withForms(1, 0);
+  // To the left and the back: as it is shown.
+  EXPECT_EQ(std::memcmp(byQuaternion->voxels().data(), values.data(), 48), 0);
+  EXPECT_TRUE(byQuaternion->notes().empty());
+  EXPECT_EQ(byQuaternion->grid().spacingMm, glm::dvec3(2, 1, 1));
+  for (const auto& volume : {withForms(0, 1), withForms(1, 1), withForms(2, 4)})
+    EXPECT_EQ(volume->identity(), byQuaternion->identity());
+}
+
 TEST_F(ItkFiles, WiderTypesBecomeFloatWithANote) {
   const std::vector<double> values(5 * 4 * 3, 1.0 / 3);
   writeWithItk(*itk::MetaImageIO::New(), folder() / "double.mha", image(Component::DOUBLE), values.data());

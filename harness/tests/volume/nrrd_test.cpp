@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <type_traits>
 
 namespace volmark::test {
@@ -129,6 +130,43 @@ TEST_F(Nrrd, SpacingIsThatOfTheHeader) {
   EXPECT_EQ(spacingWith("space directions: (0.5,0,0) (0, -2, 0) (0,0,3)\n"), glm::dvec3(0.5, 2, 3));
   const glm::dvec3 rotated = spacingWith("space directions: (3,4,0)(-4,3,0) (0,0,2)\nspacings: 9 9 9\n");
   EXPECT_NEAR(glm::length(rotated - glm::dvec3(5, 5, 2)), 0, 1e-12);
+}
+
+// The same patient, whatever space the directions are written in.
+TEST_F(Nrrd, SpacesDifferInTheSignsOfTheirAxes) {
+  const std::map<std::string, glm::ivec3> spaces = {
+      {"left-posterior-superior", {1, 1, 1}},        {"LPS", {1, 1, 1}},
+      {"right-anterior-superior", {-1, -1, 1}},      {"RAS", {-1, -1, 1}},
+      {"left-anterior-superior", {1, -1, 1}},        {"las", {1, -1, 1}},
+      {"Right-Anterior-Superior-Time", {-1, -1, 1}}, {"RAST", {-1, -1, 1}},
+      {"left-anterior-superior-time", {1, -1, 1}},   {"LAST", {1, -1, 1}},
+  };
+  glm::ivec3 order{0, 1, 2};
+  do
+    for (int flips = 0; flips < 8; ++flips) {
+      std::string identity;
+      for (const auto& [space, signs] : spaces) {
+        SCOPED_TRACE(fmt::format("{} {}{}{} {}", space, order.x, order.y, order.z, flips));
+        const bool time = space.ends_with('T') || space.ends_with("ime");
+        std::string lines = fmt::format("space: {}\nspace directions:", space);
+        for (int axis = 0; axis < 3; ++axis) {
+          glm::ivec3 direction(0);
+          direction[order[axis]] = (flips >> axis & 1 ? -1 : 1) * signs[order[axis]] * (axis + 1);
+          lines += fmt::format(" ({},{},{})", direction.x, direction.y, direction.z);
+        }
+        const auto volume =
+            loadNrrd(write("space.nrrd", fmt::format("NRRD0005\ntype: uint8\ndimension: {}\nsizes: 2 3 4{}\nencoding: "
+                                                     "raw\n{}{}\n\nabcdefghijklmnopqrstuvwx",
+                                                     time ? 4 : 3, time ? " 1" : "", lines, time ? " none" : "")),
+                     kNoLimit);
+        if (identity.empty()) identity = volume->identity();
+        EXPECT_EQ(volume->identity(), identity);
+        // Axis 0 of the file points left where it is not flipped.
+        const bool upwards = volume->value(0, 0, 0) < volume->value(1, 0, 0);
+        EXPECT_TRUE(order.x != 0 || upwards == ((flips & 1) == 0));
+      }
+    }
+  while (std::next_permutation(&order[0], &order[0] + 3));
 }
 
 TEST_F(Nrrd, FourthAxisIsTime) {

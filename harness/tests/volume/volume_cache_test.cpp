@@ -66,6 +66,26 @@ TEST_F(VolumeCache, AChangedFileIsDecodedAnew) {
   EXPECT_EQ(loadVolumeFile(path, kNoLimit)->value(0, 0, 0), 8);
 }
 
+// Of the same length, a nanosecond later or in another file of the same name and time.
+TEST_F(VolumeCache, TheSmallestChangeCounts) {
+  const fs::path path = writeVolume("a.nrrd", 7);
+  const fs::file_time_type time = fs::last_write_time(path);
+  loadVolumeFile(path, kNoLimit);
+  EXPECT_EQ(kept().size(), 1u);
+
+  writeVolume("a.nrrd", 8);
+  fs::last_write_time(path, time + std::chrono::nanoseconds(1));
+  EXPECT_EQ(loadVolumeFile(path, kNoLimit)->value(0, 0, 0), 8);
+  EXPECT_EQ(kept().size(), 2u);
+
+  const fs::path other = writeVolume("b.nrrd", 9);
+  fs::last_write_time(other, time + std::chrono::nanoseconds(1));
+  ASSERT_EQ(fs::file_size(other), fs::file_size(path));
+  fs::rename(other, path);
+  EXPECT_EQ(loadVolumeFile(path, kNoLimit)->value(0, 0, 0), 9);
+  EXPECT_EQ(kept().size(), 3u);
+}
+
 TEST_F(VolumeCache, FilesThatJustChangedAreNotKept) {
   const fs::path path = writeVolume("a.nrrd", 7);
   fs::last_write_time(path, fs::file_time_type::clock::now());
