@@ -42,6 +42,13 @@ void installSignalHandlers() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+/// Names of files are part of an error, and may hold anything.
+void printError(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  fmt::print(stderr, "volmark: {}\n", text);
+}
+
 int parseAndRun(int argc, char** argv) {
   CLI::App app{"volmark measures volume and isosurface rendering techniques the way their papers did.", "volmark"};
   app.footer(kFooter);
@@ -81,10 +88,10 @@ int main(int argc, char** argv) {
   try {
     return parseAndRun(argc, argv);
   } catch (const InputError& error) {
-    fmt::print(stderr, "volmark: {}\n", error.what());
+    printError(error.what());
     return 2;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "volmark: {}\n", error.what());
+    printError(error.what());
     return 3;
   }
 }

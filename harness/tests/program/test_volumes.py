@@ -110,6 +110,17 @@ def test_a_file_needs_no_path_to_be_one(volmark):
     assert "unknown scene" in refused(volmark, "info", "b.vti")
 
 
+@pytest.mark.parametrize("name", ["two\nlines", "red\x1b[31m", "back\rto the start"])
+def test_names_stay_in_their_line(volmark, name):
+    """Of a file, and in a header that somebody else wrote."""
+    (volmark.folder / (name + ".nrrd")).write_bytes(b"")
+    (volmark.folder / "a.nrrd").write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n"
+                                            b"data file: " + name.replace("\n", "\f").encode() + b"\n")
+    for file in (name + ".nrrd", "a.nrrd"):
+        said = refused(volmark, "info", "./" + file)
+        assert said.rstrip("\n").isprintable() and name[:3] in said
+
+
 @pytest.mark.parametrize("gib", ["-1", "0", "nan", "inf", "1e300"])
 def test_the_limit_is_a_size(volmark, gib):
     write_nrrd(volmark.folder / "a.nrrd", 0)
