@@ -10,7 +10,8 @@ from pathlib import Path
 
 from . import comparisons, export, microbenchmarks, plots, report, tables
 from .errors import InputError
-from .gate.command import add_command as add_gate_command
+from .gate import command as gate
+from .grid import command as grid
 from .load import load_experiment
 from .points import point_results
 
@@ -82,7 +83,8 @@ def _parser() -> argparse.ArgumentParser:
                      help="volmark_bench --benchmark_out=FILE --benchmark_out_format=json --benchmark_repetitions=5")
     sub.add_argument("--old", metavar="FILE", type=Path, help="the same of another build: adds the ratio of the medians")
     sub.set_defaults(run=_bench)
-    add_gate_command(commands)
+    gate.add_command(commands)
+    grid.add_command(commands)
     return parser
 
 
