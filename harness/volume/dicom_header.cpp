@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint64_t kPreambleBytes = 128;
 constexpr std::uint32_t kUndefinedLength = 0xffffffff;
 constexpr int kDeepestSequence = 16;
-constexpr int kMostElements = 100'000;       // before the pixels, in sequences too: each costs a system call
+constexpr int kMostElements = 100'000;       // before the pixels, in sequences too
 constexpr std::uint32_t kLongestValue = 256; // of the elements that are looked at
 
 constexpr std::uint32_t tag(std::uint32_t group, std::uint32_t element) {
@@ -90,11 +90,15 @@ private:
   template <std::size_t Size> std::array<std::uint8_t, Size> bytes() {
     std::array<std::uint8_t, Size> result;
     if (m_length - std::min(m_length, m_position) < Size) fail("the file ends within an element");
-    m_file.seekg(static_cast<std::streamoff>(m_position));
-    m_file.read(reinterpret_cast<char*>(result.data()), Size);
-    if (!m_file) fail("can't be read");
-    m_position += Size;
+    read(reinterpret_cast<char*>(result.data()), Size);
     return result;
+  }
+  void read(char* to, std::size_t count) {
+    // A seek, even to the same place, would drop what the stream has read ahead.
+    if (m_read != m_position) m_file.seekg(static_cast<std::streamoff>(m_position));
+    m_file.read(to, static_cast<std::streamsize>(count));
+    if (!m_file) fail("can't be read");
+    m_read = m_position += count;
   }
   std::uint32_t number16(std::uint8_t a, std::uint8_t b) const {
     return m_bigEndian ? std::uint32_t(a) << 8 | b : std::uint32_t(b) << 8 | a;
@@ -137,8 +141,8 @@ private:
       fail(fmt::format("element ({:04X},{:04X}) of {} bytes, allowed: {}", element.tag >> 16, element.tag & 0xffff,
                        element.length, kLongestValue));
     std::string value(element.length, '\0');
-    m_file.seekg(static_cast<std::streamoff>(start));
-    m_file.read(value.data(), element.length);
+    m_position = start;
+    read(value.data(), value.size());
     while (!value.empty() && (value.back() == '\0' || value.back() == ' '))
       value.pop_back();
     return value;
@@ -242,7 +246,8 @@ private:
   std::ifstream m_file;
   int m_elements = 0;
   std::uint64_t m_length;
-  std::uint64_t m_position;
+  std::uint64_t m_position; ///< of the next element
+  std::uint64_t m_read = 0; ///< of the stream
   bool m_explicit = true;
   bool m_bigEndian = false;
   bool m_inData = false;

@@ -1,4 +1,5 @@
 // Round trips through files that ITK wrote, and agreement of the formats.
+#include "volume/dicom_bytes.h"
 #include "volume/itk_files.h"
 #include "volume/itk_reader.h"
 #include "volume/nrrd.h"
@@ -385,6 +386,46 @@ TEST_F(DicomSeries, SlopeAndInterceptAreApplied) {
              {.name = fmt::format("s{}", slice), .origin = {0, 0, double(slice)}, .slope = "2", .intercept = "-1024"});
   // ITK stores (value + 1024) / 2, so that even values come back: 2008 is stored as 1516.
   EXPECT_EQ(loadVolumeFile(folder(), kNoLimit)->value(2, 1, 2), 2000 + kColumns + 2);
+}
+
+TEST_F(DicomSeries, Jpeg2000ComesBack) {
+  ItkImage image;
+  image.dims = {64, 48, 1};
+  image.compressed = true;
+  image.metadata = {{"0020|000e", "1.2.3.4"}, {"0008|0060", "CT"}};
+  const auto values = sampleValues<std::int16_t>(64 * 48);
+  const auto io = itk::GDCMImageIO::New();
+  io->SetCompressionType(itk::GDCMImageIO::JPEG2000);
+  writeWithItk(*io, folder() / "a.dcm", image, values.data());
+  EXPECT_LT(std::filesystem::file_size(folder() / "a.dcm"), 64u * 48 * 2);
+  EXPECT_EQ(std::memcmp(loadVolumeFile(folder(), kNoLimit)->voxels().data(), values.data(), 64 * 48 * 2), 0);
+}
+
+// Run lengths by hand: a table of two parts, the high and the low bytes, each as literal runs of at most 128.
+TEST_F(DicomSeries, RunLengthsComeBack) {
+  std::string high;
+  std::string low;
+  for (int i = 0; i < 12; ++i) {
+    high += static_cast<char>(i / 5);
+    low += static_cast<char>(250 - 10 * i);
+  }
+  const auto run = [](const std::string& bytes) { return static_cast<char>(bytes.size() - 1) + bytes; };
+  std::string table(64, '\0');
+  table[0] = 2;
+  table[4] = 64;
+  table[8] = static_cast<char>(64 + run(high).size() + 1);
+  const std::string parts = table + run(high) + '\0' + run(low) + '\0';
+  Dicom dicom;
+  dicom.element(0x00020010, "UI", std::string("1.2.840.10008.1.2.5\0", 20));
+  dicom.bytes += slice().bytes.substr(slice().bytes.find(std::string("\x20\0\x0e\0", 4)));
+  dicom.longElement(0x7fe00010, "OB", Dicom::kOpen,
+                    Dicom::item(0, "") + Dicom::item(static_cast<std::uint32_t>(parts.size()), parts) +
+                        Dicom::kSequenceEnd);
+  write("runs.dcm", dicom.bytes);
+  const auto volume = loadVolumeFile(folder(), kNoLimit);
+  ASSERT_EQ(volume->grid().dims, glm::ivec3(4, 3, 1));
+  for (int i = 0; i < 12; ++i)
+    ASSERT_EQ(volume->value(i % 4, i / 4, 0), 256 * (i / 5) + (250 - 10 * i));
 }
 
 TEST_F(DicomSeries, UnevenDistancesAndTiltAreNoted) {
