@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -30,6 +31,7 @@ constexpr std::size_t kHeadBytes = 4096; // a page, so that voxels are aligned
 constexpr double kDefaultGib = 32;
 constexpr std::uint64_t kLeastBytes = 1u << 20;
 constexpr std::time_t kSettledSeconds = 2;
+constexpr std::chrono::minutes kLongestWriting{10}; // without a byte written
 
 fs::path folder() {
   return gpu::cacheFolder() / "volumes";
@@ -76,7 +78,7 @@ std::shared_ptr<const Volume> find(const fs::path& path) {
   }
 }
 
-/// Removes the files used longest ago until `bytes` more fit.
+/// Removes the files used longest ago until `bytes` more fit, and what was never finished.
 void makeRoom(std::uint64_t bytes, std::uint64_t limit) {
   struct Entry {
     fs::file_time_type used;
@@ -87,7 +89,13 @@ void makeRoom(std::uint64_t bytes, std::uint64_t limit) {
   std::uint64_t total = bytes;
   std::error_code ignored;
   for (const auto& file : fs::directory_iterator(folder(), ignored)) {
-    if (file.path().extension() != ".voxels") continue;
+    if (file.path().extension() != ".voxels") {
+      // Somebody is writing it, or was killed while he did.
+      std::error_code gone;
+      const fs::file_time_type written = file.last_write_time(gone);
+      if (!gone && fs::file_time_type::clock::now() - written > kLongestWriting) fs::remove(file.path(), ignored);
+      continue;
+    }
     entries.push_back({file.last_write_time(ignored), file.path(), file.file_size(ignored)});
     total += entries.back().bytes;
   }

@@ -126,6 +126,17 @@ TEST_F(VolumeCache, DropsWhatWasUsedLongestAgo) {
     EXPECT_EQ(loadVolumeFile(paths[static_cast<std::size_t>(i)], kNoLimit)->value(1, 1, 1), i + 1);
 }
 
+TEST_F(VolumeCache, DropsWhatAKilledProcessLeft) {
+  fs::create_directories(folder() / "cache" / "volumes");
+  const fs::path left = write("cache/volumes/0123.voxels.4567", "half of it");
+  const fs::path written = write("cache/volumes/0123.voxels.4568", "by somebody right now");
+  fs::last_write_time(left, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  loadVolumeFile(writeVolume("a.nrrd", 7), kNoLimit);
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(written));
+  EXPECT_EQ(kept().size(), 2u);
+}
+
 TEST_F(VolumeCache, CanBeOffAndRefusesOtherText) {
   const fs::path path = writeVolume("a.nrrd", 7);
   ::setenv("VOLMARK_VOLUME_CACHE_GIB", "0", 1);
