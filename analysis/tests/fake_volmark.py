@@ -7,10 +7,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 
-def side_of(program):
-    """What a build does is in a file beside its program."""
+def side_of(program, technique):
+    """What a build does is in a file beside its program: `only` of one technique, or of all."""
     import gate_folders
-    return gate_folders.make_side(**json.loads(Path(program).with_name("side.json").read_text()))
+    changes = json.loads(Path(program).with_name("side.json").read_text())
+    return gate_folders.make_side(**changes if changes.pop("only", technique) == technique else {})
 
 
 def run(arguments, config):
@@ -18,15 +19,15 @@ def run(arguments, config):
     values = lambda option: [b for a, b in zip(arguments, arguments[1:]) if a == option]  # noqa: E731
     settings = dict(s.split("=") for s in values("--set"))
     programs = dict(b.split("=", 1) for b in values("--build"))
-    sides = [side_of(programs[name]) if name in programs else None for name in ("base", "candidate")]
     chosen = [int(p) for p in values("--points")[0].split(",")] if values("--points") else range(len(config["points"]))
-    points = {config["points"][i]: sides for i in chosen}
+    points = {t: [side_of(programs[name], t) if name in programs else None for name in ("base", "candidate")]
+              for t in (config["points"][i] for i in chosen)}
     folder = Path(values("--results")[0]) / config["name"]
     pairs, seed = int(settings["measure.replicates"]), int(settings["measure.seed"])
     gate_folders.write_experiment(folder, config["name"], points, pairs, seed)
     with open(Path(values("--results")[0]).parent / "calls", "a") as file:
-        file.write(f"{folder.parent.name} {config['name']} {pairs} {list(chosen)} {seed} {arguments[0]}\n")
-    return max(side is not None and side["status"] != "completed" for side in sides)
+        file.write(f"{folder.parent.name} {pairs} {','.join(map(str, chosen))} {seed}\n")
+    return max(side is not None and side["status"] != "completed" for sides in points.values() for side in sides)
 
 
 def main(program, arguments):
@@ -41,7 +42,7 @@ def main(program, arguments):
         print(f"volmark: {config['exit'][1]}", file=sys.stderr)
         return config["exit"][0]
     if arguments[0] == "run":
-        return run(["runner " + Path(program).parent.name, *arguments[1:]], config)
+        return run(arguments, config)
     return 0
 
 

@@ -17,7 +17,7 @@ def make_side(**changes):
     side = {"cpu": 1.0, "wall": 1.0, "noise": 0.002, "counters": {"samples": 9000.0, "rays": 120.0}, "picture": 0.5,
             "mse": 1e-4, "status": "completed", "reason": "", "instructions": 10e6, "checks": True, "config": {},
             "deterministic": True, "provenance": {}, "device": DEVICE, "governor": "performance", "disturbed": "",
-            "statistical": 5.0, "point_hash": "same"}
+            "statistical": 5.0, "repeats": True, "point_hash": "same"}
     unknown = changes.keys() - side.keys()
     assert not unknown, unknown
     return side | changes
@@ -62,7 +62,9 @@ def _write_run(folder, index, technique, build, replicate, side, shared, rng):
     run = folder / "runs" / name[:2] / name
     run.mkdir(parents=True, exist_ok=True)
     kinds = {"samples": "exact", "rays": "per_device", "luck": "statistical"}
-    counters = side["counters"] | {"luck": side["statistical"] + replicate}
+    counters = side["counters"] | {"luck": side["statistical"]}
+    if not side["repeats"]:
+        counters["samples"] += replicate
     document = {
         "format": "volmark.run", "version": 1, "run": name, "point": side["point_hash"], "replicate": replicate,
         "point_index": index, "group": "", "labels": {"technique": technique, "build": build}, "status": side["status"],
@@ -87,7 +89,7 @@ def _write_run(folder, index, technique, build, replicate, side, shared, rng):
             file.write("# volmark.counters 1\n")
             rows = [[f, f / FRAMES, *(v + f for v in counters.values())] for f in range(FRAMES)]
             csv.writer(file).writerows([["frame", "phase", *counters], *rows])
-        rgba = {c: np.full(SIZE, side["picture"], "<f2") for c in "RGBA"}
+        rgba = {c: np.full(SIZE, side["picture"] + (0 if side["repeats"] else replicate / 8), "<f2") for c in "RGBA"}
         write_exr(run / "frame.exr", rgba)
         document |= {
             "statistics": {"frame": dict.fromkeys(("mean_ms", "median_ms", "p99_ms", "low1_avg_ms", "low1_integral_ms",

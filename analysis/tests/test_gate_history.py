@@ -6,7 +6,6 @@ import pytest
 from gate_folders import make_side, write_gate
 from hostile import HOSTILE
 from volmark_analysis.__main__ import main
-from volmark_analysis.errors import InputError
 from volmark_analysis.gate import history
 from volmark_analysis.gate.evidence import read_evidence
 from volmark_analysis.gate.rules import Rules
@@ -16,7 +15,7 @@ from volmark_analysis.gate.verdicts import judge
 def write_history(path, instructions, cpu_ms, device="llvmpipe", name="point"):
     lines = [{"format": history.FORMAT, "version": 1, "created": "2025-01-01T00:00:00Z", "outcome": "same", "device": device,
               "base": {"name": "main", "commit": ""}, "candidate": {"name": f"build {i}", "commit": f"{i:040x}"[::-1]},
-              "points": [{"scenario": "ci", "point": name, "outcome": "same", "instructions": n, "cpu_ms": t, "wall_ms": t,
+              "points": [{"scenario": "ci", "point": name, "outcome": "same", "instructions": n, "mse": 1e-4, "cpu_ms": t, "wall_ms": t,
                           "ratios": {}}]} for i, (n, t) in enumerate(zip(instructions, cpu_ms))]
     path.write_text("".join(json.dumps(line) + "\n" for line in lines))
     return path
@@ -31,7 +30,7 @@ def test_verdicts_come_back_as_they_were(tmp_path):
     entries = history.read_history(tmp_path / "new" / "history.jsonl")
     assert len(entries) == 2 and entries[0] == entries[1]
     point = entries[0]["points"][0]
-    assert (point["instructions"], point["outcome"]) == (11e6, "regressed")
+    assert (point["instructions"], point["outcome"], point["mse"]) == (11e6, "regressed", 1e-4)
     assert point["cpu_ms"] == pytest.approx(18, rel=0.5) and len(point["ratios"]["cpu"]) == 3
     assert entries[0]["candidate"]["commit"] == "c" * 40
 
@@ -61,13 +60,26 @@ def test_equal_histories_give_equal_bytes(tmp_path):
     assert [p.read_bytes() for p in history.write_plot(tmp_path, entries, 5e-4)] == first
 
 
-def test_devices_are_not_mixed(tmp_path):
+def test_times_stand_beside_the_error_of_their_pictures(tmp_path, monkeypatch):
+    titles = []
+    monkeypatch.setattr("matplotlib.axes.Axes.set_title", lambda self, text, **more: titles.append(text))
+    entries = history.read_history(write_history(tmp_path / "history.jsonl", [1e8] * 3, [10.0] * 3))
+    entries[2]["points"][0]["mse"] = 1e-3
+    history.write_plot(tmp_path, entries, 5e-4)
+    assert [t.endswith("pictures 30.0 dB to 40.0 dB") for t in titles] == [True, True]
+    for entry in entries:
+        del entry["points"][0]["mse"]
+    history.write_plot(tmp_path, entries, 5e-4)
+    assert titles[-1].endswith("error not measured")
+
+
+def test_devices_are_not_mixed(tmp_path, monkeypatch):
     entries = history.read_history(write_history(tmp_path / "a", [1e8] * 4, [10.0] * 4))
     entries += history.read_history(write_history(tmp_path / "b", [5e8] * 2, [1.0] * 2, device="another"))
+    drawn = []
+    monkeypatch.setattr(history, "_draw", lambda ax, series, *more: drawn.append(list(series.values)))
     history.write_plot(tmp_path, entries, 5e-4)
-    ours = (tmp_path / "history.svg").read_bytes()
-    history.write_plot(tmp_path, entries[:4], 5e-4)
-    assert ours != (tmp_path / "history.svg").read_bytes()
+    assert drawn == [[5e8] * 2, [1.0] * 2]
 
 
 def test_hostile_names_are_text(tmp_path, capsys):

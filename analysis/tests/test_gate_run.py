@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import gate_folders
 import pytest
 from volmark_analysis.__main__ import main
 from volmark_analysis.gate import stages
@@ -34,7 +33,6 @@ def build(folder, **changes):
     program = Path(folder) / "volmark"
     program.write_text(f'#!/bin/sh\nexec {sys.executable} {FAKE} "$0" "$@"\n')
     program.chmod(0o755)
-    gate_folders.make_side(**changes)
     (Path(folder) / "side.json").write_text(json.dumps(changes))
     return folder
 
@@ -78,11 +76,11 @@ def test_equal_builds_pass(here, capsys, monkeypatch):
 
 
 def test_slower_builds_are_confirmed_by_fresh_pairs_of_the_slow_point_alone(here, capsys):
-    build("a"), build("b", cpu=1.1, wall=1.1)
+    build("a"), build("b", only="iso", cpu=1.1, wall=1.1)
     assert gate("--base", "a", "--candidate", "b", "--output", "out", "--pairs", 8, "--no-instructions") == 1
-    confirming = [c for c in calls("out") if c[0] == "confirmation"]
-    assert len(confirming) == 1 and "[0," in " ".join(confirming[0])
-    seeds = {c[0]: c[-3] for c in calls("out")}
+    assert [(stage, points) for stage, _, points, _ in calls("out")] == \
+        [("first", "0,1"), ("first", "0,1"), ("confirmation", "1")]
+    seeds = {stage: seed for stage, _, _, seed in calls("out")}
     assert seeds["first"] != seeds["confirmation"]
     assert "confirmed" in capsys.readouterr().out
 
@@ -96,7 +94,7 @@ def test_the_time_given_decides_the_number_of_pairs(here, monkeypatch):
     pairs = {}
     for minutes in (1, 8, 60):
         assert gate("--base", "a", "--candidate", "b", "--output", f"out{minutes}", "--minutes", minutes, "--no-instructions") == 0
-        pairs[minutes] = int(calls(f"out{minutes}")[-1][2])
+        pairs[minutes] = int(calls(f"out{minutes}")[-1][1])
     assert pairs[1] == stages.FEWEST_PAIRS < pairs[8] < pairs[60] == stages.MOST_PAIRS
 
 
@@ -122,6 +120,7 @@ def test_judging_again_runs_nothing_and_takes_other_rules(here, capsys):
 def test_baselines_hold_what_is_exact(here, capsys):
     build("a"), build("slow", cpu=3.0, wall=3.0), build("b", counters={"samples": 1.0})
     assert gate("--candidate", "a", "--store-baseline", "base.json", "--no-instructions") == 0
+    assert not Path("results/gate/history.jsonl").exists()  # nothing was judged
     stored = json.loads(Path("base.json").read_text())
     assert stored["format"] == "volmark.baseline" and "_ms" not in json.dumps(stored) and "time" not in stored
     assert gate("--base", "base.json", "--candidate", "slow", "--no-instructions", "--output", "o1") == 0
@@ -174,11 +173,11 @@ def test_counts_are_of_the_frames_of_the_last_orbit(here, monkeypatch):
     scenario = read_scenario(Path(build("a")).resolve() / "volmark", Path("configs/ci/small.json"))
     program = here / "a" / "volmark"
     fake_valgrind(here / "bin", monkeypatch, [9000, 1, 2, 3, 40, 50, 60, 80, 777])
-    count = count_instructions(program, scenario, 1, here / "counts", here / "shaders", "")
+    count = count_instructions(program, scenario, 1, here / "counts", here / "shaders")
     assert (count.frames, count.per_frame) == ([60, 80], 70)
     warming, counting = (here / "bin" / "calls").read_text().splitlines()
     assert "--tool=none" in warming and "--orbits 0" in warming and "--tool=callgrind" in counting and "--orbits 2" in counting
-    assert all(line.startswith(f"{here}/shaders 0 ") and "--profile instructions" in line for line in (warming, counting))
+    assert all(line.startswith(f"{here}/shaders 0 ") and "--profile instructions" in line and "--device llvmpipe" in line for line in (warming, counting))
 
 
 def test_what_cannot_be_counted_says_why(here, capsys, monkeypatch):
@@ -189,7 +188,7 @@ def test_what_cannot_be_counted_says_why(here, capsys, monkeypatch):
     assert "not counted" in printed and "1 of 4 frames were counted" in printed
     monkeypatch.setenv("PATH", "/nowhere")
     with pytest.raises(MachineError, match="valgrind is not installed"):
-        count_instructions(here / "a/volmark", read_scenario_stub(), 0, here / "c", here / "s", "")
+        count_instructions(here / "a/volmark", read_scenario_stub(), 0, here / "c", here / "s")
 
 
 def read_scenario_stub():

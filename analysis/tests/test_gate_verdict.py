@@ -62,6 +62,16 @@ def test_statistical_counters_are_not_compared(tmp_path):
     assert judged(tmp_path, make_side(statistical=7.0))[0].outcome == SAME
 
 
+def test_what_stops_repeating_is_a_change_and_what_never_did_is_no_evidence(tmp_path):
+    wild = make_side(repeats=False)
+    verdict, point = judged(tmp_path / "a", wild)
+    assert verdict.outcome == REGRESSED
+    assert all("does not repeat between processes" in finding(point, name).text for name in ("pictures", "counters"))
+    verdict, point = judged(tmp_path / "b", wild, wild)
+    assert verdict.outcome == SAME
+    assert all("unrepeatable" in finding(point, name).text for name in ("pictures", "counters"))
+
+
 def test_a_thousandth_more_instructions_is_found_and_less_is_better(tmp_path):
     for name, share, outcome in (("a", 1e-3, REGRESSED), ("b", 1e-5, SAME), ("c", -1e-5, SAME), ("d", -1e-3, IMPROVED)):
         verdict, point = judged(tmp_path / name, make_side(instructions=10e6 * (1 + share)))
@@ -129,7 +139,7 @@ def test_what_cannot_be_compared_is_refused(tmp_path, change, words):
 @pytest.mark.parametrize("change, words", [
     ({"governor": "powersave"}, "different governor"), ({"provenance": {"build": {"type": "Debug"}}}, "not a Release build"),
     ({"provenance": {"program": {"dirty": True}}}, "uncommitted changes"),
-    ({"provenance": {"environment": {"LP_NUM_THREADS": "1"}}}, "LP_NUM_THREADS=1"),
+    ({"provenance": {"environment": {"LP_NUM_THREADS": "1"}}}, "environment LP_NUM_THREADS: base unset, candidate 1"),
     ({"point_hash": "other", "config": {"technique": {"new": 1}}}, "only one build knows: technique.new"),
     ({"disturbed": "switches"}, "% of the frames had competition")])
 def test_what_differs_a_little_is_said(tmp_path, change, words):
@@ -153,11 +163,13 @@ def test_the_gravest_outcome_wins():
 def test_pairs_are_of_equal_replicates_and_poses(tmp_path):
     """A replicate that one build lost takes its partner with it; a missing frame is no pair at all."""
     folder = write_gate(tmp_path, {("ci", "dvr"): SAME_SIDES}, pairs=9)
-    runs = sorted(folder.glob("first/ci/runs/*/*/run.json"))
-    gone = json.loads(runs[0].read_text()) | {"status": "crashed"}
-    runs[0].write_text(json.dumps(gone))
-    assert judge(read_evidence(folder), Rules()).points[0].clocks["cpu"].pairs == 8
-    frames = runs[1].parent / "frames.csv"
+    runs = {(d["labels"]["build"], d["replicate"]): (path, d) for path in folder.glob("first/ci/runs/*/*/run.json")
+            for d in [json.loads(path.read_text())]}
+    path, document = runs["base", 2]
+    path.write_text(json.dumps(document | {"status": "crashed"}))
+    clock = judge(read_evidence(folder), Rules()).points[0].clocks["cpu"]
+    assert clock.pairs == 8 and clock.outcome == SAME  # any other pairing brings in what processes share
+    frames = runs["candidate", 5][0].parent / "frames.csv"
     frames.write_text("\n".join(frames.read_text().splitlines()[:-1]) + "\n")
     with pytest.raises(InputError, match="other poses"):
         judge(read_evidence(folder), Rules())

@@ -72,7 +72,8 @@ def _built(commit: str, cache: Path, say: Callable[[str], None]) -> Path:
     cache.mkdir(parents=True, exist_ok=True)
     log = cache.resolve() / f"{commit[:12]}.log"
     say(f"building {commit[:12]} (log: {log})")
-    commands = [["cmake", "--preset", "release", "-DVOLMARK_TESTS=OFF"], ["cmake", "--build", "--preset", "release", "--parallel"]]
+    commands = [["cmake", "--preset", "release", "-DVOLMARK_TESTS=OFF"],
+                ["cmake", "--build", "--preset", "release", "--parallel"]]
     with open(log, "w", encoding="utf-8") as output:
         if not (source / "CMakeLists.txt").exists():
             _logged(["git", "worktree", "prune"], None, output, commit, log)

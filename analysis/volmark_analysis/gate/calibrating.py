@@ -89,7 +89,7 @@ def _instruction_entry(task: Calibration, scenario: Scenario, point: dict) -> di
     def count(name, environment=None):
         task.clock.say(f"instructions of {scenario.name}, {name}")
         folder = task.folder / "instructions" / f"{scenario.name}-{point['index']}-{name}"
-        return count_instructions(task.build.program, scenario, point["index"], folder, task.shaders, task.device,
+        return count_instructions(task.build.program, scenario, point["index"], folder, task.shaders,
                                   environment).per_frame
 
     first, again = count("first"), count("again")

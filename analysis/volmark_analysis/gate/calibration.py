@@ -15,6 +15,7 @@ import numpy as np
 
 from ..errors import InputError
 from .evidence import VERSION, read_document
+from .markdown import code
 from .rules import IMPROVED, INCONCLUSIVE, REGRESSED, SAME, Rules
 from .timing import join_clocks, judge_times
 from .verdicts import Verdict, join
@@ -94,7 +95,7 @@ def calibrate(recorded: Recorded, injected: dict[float, Recorded], rules: Rules,
     rng = np.random.default_rng(seed)
     by_pairs = {}
     for count in PAIR_NUMBERS:
-        power_trials = max(100, trials // 5)
+        power_trials = max(40, trials // 5)
         by_pairs[str(count)] = {
             "aa": outcome_counts(recorded, count, rules, trials, rng), "trials": trials,
             "smallest_slowdown": {p: smallest_share(recorded, p, count, rules, power_trials, rng) for p in recorded},
@@ -121,7 +122,7 @@ def read_calibration(path: Path) -> dict | None:
     try:
         for entry in document["by_pairs"].values():
             entry["aa"][REGRESSED], entry["trials"], entry["smallest_slowdown"].items()
-        document["device"], document["rules"]["margin"], document["rules"]["level"]
+        document["device"], document["rules"]["margin"], document["created"][:10], document["conditions"]
     except (KeyError, TypeError, AttributeError) as error:
         raise InputError(f"{path}: damaged ({type(error).__name__}: {error})") from None
     return document
@@ -147,11 +148,13 @@ def calibration_text(calibration: dict | None, verdict: Verdict) -> str:
     count, found = entry
     wrong, trials = found["aa"][REGRESSED], found["trials"]
     smallest = {p.key: found["smallest_slowdown"][p.key] for p in verdict.points if p.key in found["smallest_slowdown"]}
-    if smallest and None not in smallest.values():
-        limit = f"a slowdown of {100 * max(smallest.values()):g} % is found in {100 * WANTED_RATE:g} % of them"
+    if not smallest:
+        limit = "no slowdown of these points was tried"
+    elif None in smallest.values():
+        limit = "of some point not even a doubled time is found reliably"
     else:
-        limit = "of some point not even a doubled time is found reliably" if smallest else "no slowdown of these points was tried"
-    return (f"Calibrated {calibration['created'][:10]} ({calibration['conditions']}): {wrong} false alarms in {trials} "
+        limit = f"a slowdown of {100 * max(smallest.values()):g} % is found in {100 * WANTED_RATE:g} % of them"
+    return (f"Calibrated {code(calibration['created'][:10])} ({code(calibration['conditions'])}): {wrong} false alarms in {trials} "
             f"simulated gates of {count} pairs (at most {100 * at_most(wrong, trials):.2g} %); {limit}.")
 
 

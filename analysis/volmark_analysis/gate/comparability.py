@@ -17,8 +17,7 @@ _REFUSED = {"device": lambda run: _joined(device_of(run)), "machine": lambda run
 _LABELLED = {"governor": lambda run: _host(run, "governor"),
              "build type": lambda run: _dig(run.provenance, "build", "type"),
              "compiler": lambda run: _dig(run.provenance, "build", "compiler"),
-             "compiler flags": lambda run: _dig(run.provenance, "build", "flags"),
-             "environment": lambda run: _environment(run)}
+             "compiler flags": lambda run: _dig(run.provenance, "build", "flags")}
 _BUSY_SHARE = 0.05
 """Of frames that had competition for the CPU."""
 
@@ -47,6 +46,7 @@ def labels_of(base: list[Run], candidate: list[Run]) -> list[str]:
         a, b = _values(base, value_of), _values(candidate, value_of)
         if a != b:
             labels.append(f"different {what}: base {_text(a)}, candidate {_text(b)}")
+    labels += _environment_labels(base, candidate)
     governors = _values(base + candidate, _LABELLED["governor"])
     if governors and governors != {"performance"}:
         labels.append(f"governor {_text(governors)}: the clock frequency may have changed meanwhile")
@@ -105,9 +105,14 @@ def _short(value: Any) -> str:
     return text if len(text) <= 80 else text[:77] + "..."
 
 
-def _environment(run: Run) -> str:
-    environment = _dig(run.provenance, "environment")
-    return " ".join(f"{k}={v}" for k, v in sorted(environment.items())) if isinstance(environment, dict) else ""
+def _environment_labels(base: list[Run], candidate: list[Run]) -> list[str]:
+    """Of the variables that differ."""
+    def value_of(name):
+        return lambda run: (_dig(run.provenance, "environment") or {}).get(name, "unset")
+    names = sorted({name for run in base + candidate for name in _dig(run.provenance, "environment") or {}})
+    return [f"different environment {name}: base {_text(_values(base, value_of(name)))}, "
+            f"candidate {_text(_values(candidate, value_of(name)))}" for name in names
+            if _values(base, value_of(name)) != _values(candidate, value_of(name))]
 
 
 def _host(run: Run, key: str) -> Any:

@@ -16,7 +16,7 @@ from ..plots import FAINT, TEXT
 from .change_points import change_points, steps
 from .evidence import CANDIDATE, VERSION, Side
 from .rules import IMPROVED, INCONCLUSIVE, REGRESSED, SAME
-from .verdicts import Verdict
+from .verdicts import Verdict, error_text
 
 FORMAT = "volmark.gate_history"
 _COLORS = {SAME: "#0072B2", REGRESSED: "#D55E00", IMPROVED: "#009E73", INCONCLUSIVE: "#7F7F7F"}
@@ -36,6 +36,8 @@ class Series:
     """Of the verdicts that have it, in the order of the history."""
     values: np.ndarray
     outcomes: list[str]
+    errors: list[float | None]
+    """Mean squared ones of the worst pictures: no time without them."""
     changes: list[int]
     """Indices into `values`."""
 
@@ -45,7 +47,7 @@ def line_of(verdict: Verdict, base: Side, candidate: Side, created: str) -> dict
             "device": verdict.device, "base": {"name": base.name, "commit": base.commit},
             "candidate": {"name": candidate.name, "commit": candidate.commit},
             "points": [{"scenario": p.scenario, "point": p.name, "outcome": p.outcome,
-                        "instructions": p.instructions(CANDIDATE),
+                        "instructions": p.instructions(CANDIDATE), "mse": p.mse(CANDIDATE),
                         "cpu_ms": p.times_ms.get(CANDIDATE, {}).get("cpu"),
                         "wall_ms": p.times_ms.get(CANDIDATE, {}).get("wall"),
                         "ratios": {name: [c.ratio, c.low, c.high] for name, c in p.clocks.items()}}
@@ -86,23 +88,25 @@ def series_of(entries: list[dict], tolerance: float) -> list[Series]:
     found = []
     for name in names:
         for quantity in ("instructions", "cpu_ms"):
-            places, values, outcomes = [], [], []
+            places, values, outcomes, errors = [], [], [], []
             for place, entry in enumerate(entries):
                 for p in entry["points"]:
                     if f"{p.get('scenario')}: {p.get('point')}" == name and isinstance(p.get(quantity), (int, float)):
                         places.append(place)
                         values.append(float(p[quantity]))
                         outcomes.append(str(p.get("outcome")))
+                        errors.append(p.get("mse"))
             if values:
                 changes = steps(np.array(values), tolerance) if quantity == "instructions" \
                     else change_points(np.log(np.maximum(values, 1e-9)))
-                found.append(Series(name, quantity, np.array(places), np.array(values), outcomes, changes))
+                found.append(Series(name, quantity, np.array(places), np.array(values), outcomes, errors, changes))
     return found
 
 
 def names_of(entries: list[dict]) -> list[str]:
     """Of the candidates: their commit, or what was asked for."""
-    return [str(e.get("candidate", {}).get("commit", "")[:9] or e.get("candidate", {}).get("name", ""))[-18:] for e in entries]
+    candidates = [e.get("candidate", {}) for e in entries]
+    return [str(c.get("commit", "")[:9] or c.get("name", ""))[-18:] for c in candidates]
 
 
 def changes_text(series: list[Series], entries: list[dict]) -> list[str]:
@@ -152,6 +156,8 @@ def _figure(title: str, series: list[Series], names: list[str]) -> Figure:
 
 def _draw(ax, series: Series | None, point: str, quantity: str) -> None:
     title = "instructions a frame, millions" if quantity == "instructions" else "process CPU, ms a frame"
+    if series is not None:
+        title += f"; pictures {' to '.join(dict.fromkeys(map(error_text, _extremes(series.errors))))}"
     ax.set_title(f"{point}\n{title}", fontsize=8, color=TEXT, loc="left")
     ax.grid(color=FAINT, linewidth=0.6)
     ax.tick_params(labelsize=7)
@@ -168,6 +174,11 @@ def _draw(ax, series: Series | None, point: str, quantity: str) -> None:
     room = max(0.08 * (high - low), 0.01 * high)  # so that equal values don't look like noise
     ax.set_ylim(low - room, high + room)
     ax.ticklabel_format(axis="y", useOffset=False)
+
+
+def _extremes(errors: list[float | None]) -> list[float | None]:
+    known = [e for e in errors if e is not None]
+    return [max(known), min(known)] if known else [None]
 
 
 def _name_verdicts(row, names: list[str]) -> None:

@@ -8,17 +8,19 @@ import re
 from ..columns import number_text
 from .evidence import BASE, CANDIDATE, Side
 from .rules import IMPROVED, INCONCLUSIVE, NOT_COMPARED, REGRESSED, SAME
-from .verdicts import PointVerdict, Verdict, clock_text
+from .verdicts import PointVerdict, Verdict, clock_text, error_text
 
 _SIGNS = {REGRESSED: "❌", SAME: "✅", IMPROVED: "🚀", INCONCLUSIVE: "❔", NOT_COMPARED: "➖"}
 _LONGEST = 600
+_UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069]+")
+"""Control characters, line ends, and what turns the direction of text."""
 
 
 def code(text: str) -> str:
     """`text` as an inline code span that can't be left, in a table cell too: no line breaks or control characters, a
     fence longer than any run of backticks inside. A bar would end the cell even here, so it is written as a broken
     bar."""
-    plain = re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069]+", " ", str(text)).replace("|", "¦")
+    plain = _UNPRINTABLE.sub(" ", str(text)).replace("|", "¦")
     plain = plain if len(plain) <= _LONGEST else plain[:_LONGEST - 1] + "…"
     if not plain.strip():
         return "–"
@@ -78,7 +80,7 @@ def _times(points: list[PointVerdict]) -> list[str]:
             times = point.times_ms.get(build)
             if times:
                 lines.append(f"| {code(point.scenario)} | {code(point.name)} | {build} | {number_text(times['cpu'])} | "
-                             f"{number_text(times['wall'])} | {point.error_text(build)} |")
+                             f"{number_text(times['wall'])} | {error_text(point.mse(build))} |")
     return lines
 
 

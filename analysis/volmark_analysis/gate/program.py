@@ -16,6 +16,8 @@ from .evidence import BASE, CANDIDATE
 
 INSTRUCTIONS_PROFILE = "instructions"
 """A scenario's own profile of this name makes its points small enough to be counted."""
+_COUNTING_DEVICE = "llvmpipe"
+"""Runs shaders on the processor, whatever device the times are of."""
 _FRAME_END = "volmark::Session::complete()"
 """The function that ends a frame: what callgrind counted is written out there."""
 
@@ -100,7 +102,7 @@ class Count:
     """Of the last orbit, one by one."""
 
 
-def count_instructions(program: Path, scenario: Scenario, point: int, folder: Path, shaders: Path, device: str,
+def count_instructions(program: Path, scenario: Scenario, point: int, folder: Path, shaders: Path,
                        environment: dict[str, str] | None = None) -> Count:
     """Instructions of a frame, shader code included: the frames of the last of two orbits, each counted from the end of
     the frame before to its own. `shaders` keeps compiled shaders. Raises MachineError with the reason if they can't be
@@ -114,9 +116,10 @@ def count_instructions(program: Path, scenario: Scenario, point: int, folder: Pa
     for path in (folder, shaders):
         path.mkdir(parents=True, exist_ok=True)
     written = str(folder).replace("%", "%%")
-    draw = [str(program), "draw", str(scenario.config), "--point", str(point)]
-    draw += (["--profile", profile] if profile else []) + (["--device", device] if device else [])
-    everything = {**os.environ, **(environment or {}), "LP_NUM_THREADS": "0", "MESA_SHADER_CACHE_DIR": str(shaders.resolve())}
+    draw = [str(program), "draw", str(scenario.config), "--point", str(point), "--device", _COUNTING_DEVICE]
+    draw += ["--profile", profile] if profile else []
+    everything = {**os.environ, **(environment or {}), "LP_NUM_THREADS": "0",
+                  "MESA_SHADER_CACHE_DIR": str(shaders.resolve())}
     # Compiling differs from process to process, and takes minutes under callgrind. valgrind without a tool shows the
     # driver the same processor, so what it compiles there is found by the run that counts.
     for options in (["--tool=none", *draw, "--orbits", "0"],
@@ -129,8 +132,8 @@ def count_instructions(program: Path, scenario: Scenario, point: int, folder: Pa
     totals = read_totals(folder)
     # The last part is what came after the last frame.
     if len(totals) < 2 * frames + 1:
-        raise MachineError(f"{program}: {max(len(totals) - 1, 0)} of {2 * frames} frames were counted; has it the symbol "
-                           f"{_FRAME_END}?")
+        raise MachineError(f"{program}: {max(len(totals) - 1, 0)} of {2 * frames} frames were counted; has it the "
+                           f"symbol {_FRAME_END}?")
     last = totals[-1 - frames:-1]
     return Count(sum(last) / frames, last)
 

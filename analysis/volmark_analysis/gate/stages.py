@@ -17,7 +17,7 @@ from . import history
 from .baselines import read_baseline, write_baseline
 from .builds import Build, MachineError
 from .calibration import calibration_text, read_calibration
-from .evidence import BASE, CANDIDATE, CONFIRMATION, FIRST, VERSION, Evidence, Side, read_evidence
+from .evidence import BASE, CANDIDATE, CONFIRMATION, FIRST, VERSION, Evidence, Side, point_name, read_evidence
 from .exact import Exact
 from .markdown import to_markdown
 from .program import Scenario, count_instructions, run
@@ -110,7 +110,7 @@ def _count(gate: Gate) -> None:
         side, scenario, point = job
         folder = gate.folder / "instructions" / f"{scenario.name}-{point['index']}-{side}"
         try:
-            count = count_instructions(gate.programs[side], scenario, point["index"], folder, gate.shaders, gate.device)
+            count = count_instructions(gate.programs[side], scenario, point["index"], folder, gate.shaders)
         except (MachineError, InputError) as error:
             return job, None, str(error)
         done += 1
@@ -118,16 +118,21 @@ def _count(gate: Gate) -> None:
         return job, count, ""
 
     gate.clock.say(f"counting instructions: {len(jobs)} runs under valgrind")
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
+        results = list(pool.map(one, jobs))
+    finally:
+        pool.shutdown(cancel_futures=True)  # Ctrl-C: those that wait don't start
     counts = []
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for (side, scenario, point), count, problem in pool.map(one, jobs):
-            if problem:
-                gate.notes.append(f"instructions of {side}, {scenario.name}, not counted: {problem}")
-                continue
-            for name in gate.builds if len(sides) == 1 else (side,):
-                counts.append({"scenario": scenario.name, "labels": point["labels"], "build": name,
-                               "per_frame": count.per_frame, "frames": count.frames})
-    _write_json(gate.folder / "instructions.json", {"format": "volmark.instructions", "version": VERSION, "counts": counts})
+    for (side, scenario, point), count, problem in results:
+        if problem:
+            gate.notes.append(f"instructions of {side}, {scenario.name}, not counted: {problem}")
+            continue
+        for name in gate.builds if len(sides) == 1 else (side,):
+            counts.append({"scenario": scenario.name, "labels": point["labels"], "build": name,
+                           "per_frame": count.per_frame, "frames": count.frames})
+    _write_json(gate.folder / "instructions.json",
+                {"format": "volmark.instructions", "version": VERSION, "counts": counts})
 
 
 def _first_pairs(gate: Gate) -> int:
@@ -157,11 +162,11 @@ def _first_pairs(gate: Gate) -> int:
 
 def _confirm(gate: Gate, pairs: int) -> None:
     """With fresh processes, of the suspected points alone."""
-    suspected = suspected_points(read_evidence(gate.folder).points, gate.rules)
+    suspected = [p.key for p in suspected_points(read_evidence(gate.folder).points, gate.rules)]
     if not suspected:
         return
-    wanted = {s.name: [p["index"] for p in s.points if any(q.scenario == s.name and q.labels == p["labels"]
-                                                            for q in suspected)] for s in gate.scenarios}
+    wanted = {s.name: [p["index"] for p in s.points if f"{s.name}: {point_name(p['labels'])}" in suspected]
+              for s in gate.scenarios}
     per_round = sum(gate.seconds_per_pair[s.name] * len(wanted[s.name]) / len(s.points) for s in gate.scenarios)
     affordable = int(max(gate.clock.left, 0) / per_round) if per_round else FEWEST_PAIRS
     confirming = gate.pairs or min(max(affordable, FEWEST_PAIRS), max(pairs, FEWEST_PAIRS))

@@ -45,13 +45,18 @@ class PointVerdict:
     def instructions(self, build: str) -> float | None:
         return self.exact[build].instructions if build in self.exact else None
 
-    def error_text(self, build: str) -> str:
-        """The worst picture's error, which stands beside every time."""
+    def mse(self, build: str) -> float | None:
+        """Of the worst picture; None without a reference."""
         errors = [p.errors["mse"] for p in self.exact[build].pictures.values() if "mse" in p.errors] \
             if build in self.exact else []
-        if not errors:
-            return "error not measured"
-        return "identical" if max(errors) == 0 else f"{-10 * np.log10(max(errors)):.1f} dB"
+        return max(errors, default=None)
+
+
+def error_text(mse: float | None) -> str:
+    """What stands beside every time."""
+    if mse is None:
+        return "error not measured"
+    return f"{-10 * np.log10(mse):.1f} dB" if mse > 0 else "identical"
 
 
 @dataclass
@@ -169,13 +174,17 @@ def _exact_findings(base: Exact, candidate: Exact, rules: Rules) -> list[Finding
         findings.append(Finding("pictures", accepted, f"changed{_accepted(rules)}: " + _listed(
             [f"{c.what}: {c.detail or f'{c.before}, now {c.after}'}" for c in changes])))
     elif candidate.pictures:
-        findings.append(Finding("pictures", SAME, f"identical ({len(candidate.pictures)})"))
+        unlike = [name for name, p in candidate.pictures.items() if p.digest is None]
+        findings.append(Finding("pictures", SAME, f"unrepeatable, no larger errors: {_listed(unlike)}" if unlike
+                                else f"identical ({len(candidate.pictures)})"))
     changes = counter_changes(base, candidate)
     if changes:
         findings.append(Finding("counters", accepted, f"changed{_accepted(rules)}: " + _listed(
             [f"{c.what} {c.before} to {c.after}" + (f" ({c.detail})" if c.detail else "") for c in changes])))
     elif candidate.counters:
-        findings.append(Finding("counters", SAME, f"identical ({', '.join(candidate.counters)})"))
+        unlike = [name for name, c in candidate.counters.items() if c.digest is None]
+        findings.append(Finding("counters", SAME, f"unrepeatable: {_listed(unlike)}" if unlike
+                                else f"identical ({', '.join(candidate.counters)})"))
     share = instructions_change(base, candidate)
     if share is not None:
         more = share > rules.instructions_tolerance
