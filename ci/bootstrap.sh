@@ -24,7 +24,7 @@ packages=(
   vulkan-validationlayers zlib1g-dev
   # analysis and tests
   chromium libbenchmark-tools openexr python3 python3-distributed python3-jinja2 python3-jsonschema python3-matplotlib
-  python3-numpy python3-pandas python3-pytest python3-scipy python3-skimage
+  python3-numpy python3-pandas python3-pytest python3-scipy python3-skimage valgrind
   # data: a real head CT, a real head MRI, closed meshes
   invesalius-examples mricron-data libcgal-demo
 )
