@@ -313,7 +313,7 @@ def _write_grid_run(folder, small, template_folder, template, point, frames):
         pictures.append(picture | {"reference_file": reference, "psnr_db": psnr, "mse": 10 ** (-psnr / 10)})
     (run_folder / "run.json").write_text(json.dumps(template | {
         "run": name, "point": digest("point", number), "point_index": number, "group": point["group"], "labels": labels,
-        "pictures": pictures}))
+        "pictures": pictures, "statistics": template["statistics"] | {"frames": ORBITS * frames, "poses": frames}}))
 
 
 if __name__ == "__main__":  # python3 synthetic.py FOLDER [RUNS]: to measure a report of a large experiment

@@ -49,7 +49,10 @@ const TechniqueCatalogue& quickTechniques() {
   static const TechniqueFactory iso = fakeTechnique(
       "iso_raymarch", Draws::isosurface, {ParameterDescriptor::number("step", 0.5, 0.01, 4, "voxel", "Step length.")});
   static const TechniqueFactory dvr = fakeTechnique(
-      "dvr_raymarch", Draws::volume, {ParameterDescriptor::number("step", 0.5, 0.01, 4, "voxel", "Step length.")});
+      "dvr_raymarch", Draws::volume,
+      {ParameterDescriptor::number("step", 0.5, 0.01, 4, "voxel", "Step length."),
+       ParameterDescriptor::choice("transfer_function_kind", "post", {"post", "preintegrated"}, "When it is applied."),
+       ParameterDescriptor::integer("preintegrated_size", 256, 16, 512, "", "Entries a side.")});
   static const TechniqueCatalogue catalogue = [] {
     TechniqueCatalogue result;
     result.add(iso, "raymarch");
