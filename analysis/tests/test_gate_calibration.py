@@ -70,7 +70,7 @@ def test_bound_of_a_rate(count, trials):
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
     """A calibration of the synthetic machine, in its file."""
-    rules, recorded = Rules(), {"ci: dvr": RNG.normal(0, 0.005, (2, 40))}
+    rules, recorded = Rules(), {"ci: dvr": RNG.normal(0, 0.005, (2, 20))}
     slowed = {0.05: {"ci: dvr": recorded["ci: dvr"] + np.log(1.05)}}
     parts = calibrate(recorded, slowed, rules, 30)
     path = tmp_path_factory.mktemp("calibration") / "calibration.json"
@@ -83,6 +83,7 @@ def test_document_tells_rates_by_number_of_pairs(stored):
     document = read_calibration(stored)
     assert (document["format"], document["version"]) == ("volmark.calibration", 1)
     entry = document["by_pairs"]["12"]
+    assert list(document["by_pairs"]) == ["8", "12", "16"]  # up to what was recorded
     assert sum(entry["aa"].values()) == entry["trials"] == 30
     assert entry["injected"][0]["outcomes"][REGRESSED] >= 38
     assert 0.02 < entry["smallest_slowdown"]["ci: dvr"] <= 0.05

@@ -73,6 +73,11 @@ def test_equal_builds_pass(here, capsys, monkeypatch):
     assert [c[0] for c in calls("out")] == ["first", "first"]  # a probe, then all; nothing to confirm
     assert len(Path("results/gate/history.jsonl").read_text().splitlines()) == 1
     assert "gate [0:" in printed.err and "min left" in printed.err
+    # Two points of two builds, each once to compile and once to count; of one program under two names a count tells both.
+    assert len((here / "bin" / "calls").read_text().splitlines()) == 8
+    assert gate("--base", "a", "--candidate", "a", "--output", "again", "--pairs", 8) == 0
+    assert len((here / "bin" / "calls").read_text().splitlines()) == 8 + 4
+    assert "+0.0000 % a frame" in capsys.readouterr().out
 
 
 def test_slower_builds_are_confirmed_by_fresh_pairs_of_the_slow_point_alone(here, capsys):
@@ -125,6 +130,7 @@ def test_baselines_hold_what_is_exact(here, capsys):
     assert stored["format"] == "volmark.baseline" and "_ms" not in json.dumps(stored) and "time" not in stored
     assert gate("--base", "base.json", "--candidate", "slow", "--no-instructions", "--output", "o1") == 0
     assert "time was not compared" in capsys.readouterr().out
+    assert json.loads(Path("o1/verdict.json").read_text())["base"]["name"] == "a"
     assert gate("--base", "base.json", "--candidate", "b", "--no-instructions", "--output", "o2") == 1
     build("elsewhere", device="another GPU")
     assert gate("--base", "base.json", "--candidate", "elsewhere", "--no-instructions", "--output", "o3") == 2

@@ -94,7 +94,8 @@ def calibrate(recorded: Recorded, injected: dict[float, Recorded], rules: Rules,
     """`injected`: by share of wasted time, recorded like the A/A pairs. The result is a part of calibration.json."""
     rng = np.random.default_rng(seed)
     by_pairs = {}
-    for count in PAIR_NUMBERS:
+    fewest = min(pairs.shape[1] for pairs in recorded.values())
+    for count in (n for n in PAIR_NUMBERS if n <= fewest):  # what was never seen can't be drawn
         power_trials = max(40, trials // 5)
         by_pairs[str(count)] = {
             "aa": outcome_counts(recorded, count, rules, trials, rng), "trials": trials,
