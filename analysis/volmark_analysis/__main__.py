@@ -14,6 +14,7 @@ from .gate import command as gate
 from .grid import command as grid
 from .load import load_experiment
 from .points import point_results
+from .search import command as search
 
 _EPILOG = """examples:
   python3 -m volmark_analysis report results/quick
@@ -85,6 +86,7 @@ def _parser() -> argparse.ArgumentParser:
     sub.set_defaults(run=_bench)
     gate.add_command(commands)
     grid.add_command(commands)
+    search.add_commands(commands)
     return parser
 
 

@@ -27,7 +27,7 @@ _PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#
 _PASS_PALETTE = ("#332288", "#88CCEE", "#DDCC77", "#117733", "#CC6677", "#44AA99", "#AA4499", "#999933", "#882255")
 _LINES = ("-", (0, (5, 1.6)), (0, (1.2, 1.4)), (0, (6, 1.5, 1.2, 1.5)))
 _MARKERS = "osD^vP*X"
-_LOG_FROM_RATIO = 12.0
+LOG_FROM_RATIO = 12.0
 _MOST_BANDS = 6
 _MOST_IN_A_PANEL = 8
 _MOST_NAMED = 12
@@ -217,7 +217,7 @@ def _counter_varies(result: PointResult, name: str) -> bool:
 
 def draw_means(ax, panel: Panel, styles) -> None:
     means = [r.statistics["mean_ms"] for r in panel.results]
-    logarithmic = max(means) > _LOG_FROM_RATIO * min(means)
+    logarithmic = max(means) > LOG_FROM_RATIO * min(means)
     left = 0.5 * min(means) if logarithmic else 0.0
     for y, r in enumerate(panel.results):
         ax.barh(y, means[y] - left, left=left, height=0.42, color=styles[id(r)].color, zorder=2)
@@ -234,7 +234,7 @@ def draw_means(ax, panel: Panel, styles) -> None:
     else:
         ax.set_xlim(0, 1.42 * max(means))
     _bar_names(ax, panel)
-    _finish(ax, "frame time, ms" + (" (logarithmic)" if logarithmic else ""), "", grid="x")
+    finish(ax, "frame time, ms" + (" (logarithmic)" if logarithmic else ""), "", grid="x")
 
 
 def draw_orbit(ax, panel: Panel, styles) -> None:
@@ -254,8 +254,8 @@ def draw_orbit(ax, panel: Panel, styles) -> None:
         ax.plot(phases, middle, color=style.color, ls=style.line, lw=1.6, label=_with_error(r, panel.axes))
     _time_axis(ax, lowest, highest)
     ax.set_xlim(0, 1)
-    _legend(ax, panel)
-    _finish(ax, "place on the orbit (0 to 1)", "frame time, ms")
+    legend_above(ax, panel)
+    finish(ax, "place on the orbit (0 to 1)", "frame time, ms")
 
 
 def draw_error_time(ax, panel: Panel, styles) -> None:
@@ -268,25 +268,25 @@ def draw_error_time(ax, panel: Panel, styles) -> None:
         ax.annotate("identical", (0.01, top), xycoords=("axes fraction", "data"), xytext=(0, 3),
                     textcoords="offset points", fontsize=8, color=TEXT)
         ax.margins(y=0.12)
-    _finish(ax, ax.get_xlabel(), "lowest PSNR, dB")
+    finish(ax, ax.get_xlabel(), "lowest PSNR, dB")
 
 
 def _draw_named_error(name: str, label: str):
     def draw(ax, panel: Panel, styles) -> None:
         _scatter(ax, panel, styles, lambda r: r.errors[name], higher_is_better=name == "ssim")
-        _finish(ax, ax.get_xlabel(), label)
+        finish(ax, ax.get_xlabel(), label)
     return draw
 
 
 def draw_depth_time(ax, panel: Panel, styles) -> None:
     _scatter(ax, panel, styles, lambda r: r.errors["depth_p995_voxels"], higher_is_better=False)
     values = [r.errors["depth_p995_voxels"] for r in panel.results]
-    if min(values) > 0 and max(values) > _LOG_FROM_RATIO * min(values):
+    if min(values) > 0 and max(values) > LOG_FROM_RATIO * min(values):
         ax.set_yscale("log")
-        _plain_log_ticks(ax.yaxis)
+        plain_log_ticks(ax.yaxis)
     else:
         ax.set_ylim(0, 1.15 * max(values) or 1.0)
-    _finish(ax, ax.get_xlabel(), "depth error p99.5, voxels")
+    finish(ax, ax.get_xlabel(), "depth error p99.5, voxels")
 
 
 def _scatter(ax, panel: Panel, styles, y_of, higher_is_better: bool = True) -> None:
@@ -305,15 +305,15 @@ def _scatter(ax, panel: Panel, styles, y_of, higher_is_better: bool = True) -> N
         ax.plot(r.statistics["mean_ms"], y_of(r), marker=style.marker, ms=7, ls="", mec=GROUND, mew=0.7,
                 color=style.color, label=label_text(r, panel.axes), zorder=3)
     means = [r.statistics["mean_ms"] for r in panel.results]
-    logarithmic = max(means) > _LOG_FROM_RATIO * min(means)
+    logarithmic = max(means) > LOG_FROM_RATIO * min(means)
     if logarithmic:
         ax.set_xscale("log")
-        _plain_log_ticks(ax.xaxis)
+        plain_log_ticks(ax.xaxis)
     else:
         ax.set_xlim(0, 1.1 * max(means))
     ax.set_xlabel("mean frame time, ms" + (" (logarithmic)" if logarithmic else ""))
     ax.margins(y=0.15)
-    _legend(ax, panel)
+    legend_above(ax, panel)
 
 
 def _unbeaten(fastest_first: list[PointResult], y_of, higher_is_better: bool) -> list[PointResult]:
@@ -339,8 +339,8 @@ def draw_passes(ax, panel: Panel, styles) -> None:
                     textcoords="offset points", va="center", fontsize=8, color=TEXT)
     ax.set_xlim(0, 1.42 * max(totals))
     _bar_names(ax, panel)
-    _legend(ax, panel, columns=min(4, len(names)))
-    _finish(ax, "time, ms", "", grid="x")
+    legend_above(ax, panel, columns=min(4, len(names)))
+    finish(ax, "time, ms", "", grid="x")
 
 
 def draw_counter(ax, panel: Panel, styles, name: str) -> None:
@@ -351,8 +351,8 @@ def draw_counter(ax, panel: Panel, styles, name: str) -> None:
     ax.set_ylim(bottom=0)
     ax.yaxis.set_major_formatter(FuncFormatter(_short_count))
     ax.set_xlim(0, 1)
-    _legend(ax, panel)
-    _finish(ax, "place on the orbit (0 to 1)", f"{name.replace('_', ' ')} per frame")
+    legend_above(ax, panel)
+    finish(ax, "place on the orbit (0 to 1)", f"{name.replace('_', ' ')} per frame")
 
 
 # Axes, legends ------------------------------------------------------------------------------------------------
@@ -370,14 +370,14 @@ def _with_error(r: PointResult, axes: list[str]) -> str:
 
 
 def _time_axis(ax, lowest: float, highest: float) -> None:
-    if highest > _LOG_FROM_RATIO * lowest:
+    if highest > LOG_FROM_RATIO * lowest:
         ax.set_yscale("log")
-        _plain_log_ticks(ax.yaxis)
+        plain_log_ticks(ax.yaxis)
     else:
         ax.set_ylim(0, 1.12 * highest)
 
 
-def _plain_log_ticks(axis) -> None:
+def plain_log_ticks(axis) -> None:
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
     axis.set_minor_locator(NullLocator())
@@ -391,10 +391,10 @@ def _bar_names(ax, panel: Panel) -> None:
         ax.annotate(label_text(r, panel.axes), (0, y - 0.26), xycoords=("axes fraction", "data"), xytext=(1, 1),
                     textcoords="offset points", fontsize=8.5, va="bottom", color=TEXT)
     if ax.get_xscale() == "log":
-        _plain_log_ticks(ax.xaxis)
+        plain_log_ticks(ax.xaxis)
 
 
-def _legend(ax, panel: Panel, columns: int = 1) -> None:
+def legend_above(ax, panel: Panel, columns: int = 1) -> None:
     handles, names = ax.get_legend_handles_labels()
     if not handles:
         return
@@ -404,7 +404,7 @@ def _legend(ax, panel: Panel, columns: int = 1) -> None:
               fontsize=8, labelcolor=TEXT, handlelength=2.6, borderaxespad=0.2, columnspacing=1.2)
 
 
-def _finish(ax, x: str, y: str, grid: str = "both") -> None:
+def finish(ax, x: str, y: str, grid: str = "both") -> None:
     ax.set_xlabel(x, color=TEXT, fontsize=9)
     ax.set_ylabel(y, color=TEXT, fontsize=9)
     ax.grid(True, axis=grid, color=FAINT, lw=0.6, zorder=0)

@@ -1,6 +1,8 @@
-"""Grids that Python hands out to workers, each with the program as its child."""
+"""Grids and searches that Python hands out to workers, each with the program as its child."""
 
 import contextlib
+import csv
+import io
 import json
 import os
 import pathlib
@@ -63,3 +65,44 @@ def test_killed_workers_and_programs_lose_and_repeat_nothing(volmark, victim):
     assert (volmark.results / "scenario" / "index.csv").exists()
     status = json.loads(volmark("status", volmark.results / "scenario", "--json").stdout)
     assert status["left"] == 0 and status["active"] == []
+
+
+def test_an_interrupted_grid_leaves_nothing_half_made(volmark):
+    path = slow_grid(volmark, 8)
+    process = start(volmark, "grid", path)
+    deadline = time.time() + 60
+    while len(finished(volmark)) < 2 and time.time() < deadline:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130 and "goes on from here" in said
+    assert not hidden(volmark)
+    before = finished(volmark)
+    assert 2 <= len(before) < 8
+    assert volmark("run", path, "--results", volmark.results).returncode == 0  # the program alone goes on as well
+    after = finished(volmark)
+    assert len(after) == 8 and all(after[run] == written for run, written in before.items())
+
+
+def test_a_search_measures_the_best_points_most(volmark):
+    document = {"scene": "marschner_lobb", "resolution": [32, 24], "pictures": {"count": 2, "reference": "none"},
+                "pacing": {"mode": "frames", "frames": 6, "orbits": 2, "warm_up_frames": 3}}
+    document["technique"] = {"name": "test_faults", "parameters": {}}
+    path = volmark.scenario({"set": document, "blocks": [{"axes": {"ms": {
+        "path": "technique.parameters.frame_ms", "values": [30, 5, 25, 10, 35, 15, 40, 20, 45]}}}]})
+    process = start(volmark, "halve", path, "--replicates", 4, "--eta", 2, "--format", "csv")
+    output, said = process.communicate(timeout=120)
+    assert process.returncode == 0, said
+    rows = list(csv.DictReader(io.StringIO(output)))
+    assert rows[0]["ms"] == "5" and rows[0]["rank"] == "best" and rows[0]["replicates"] == "4"
+    assert all(float(r["low_ms"]) <= float(rows[0]["high_ms"]) for r in rows[1:])
+    replicates = {}
+    for labels in volmark.runs():
+        replicates[int(labels[1])] = max(replicates.get(int(labels[1]), 0), labels[2] + 1)
+    assert sorted(replicates) == [5, 10, 15, 20, 25, 30, 35, 40, 45]
+    assert sorted(replicates.values()) == [1] * 4 + [2] * 2 + [4] * 3  # 9 points, 5 of them twice, 3 of them four times
+    assert all(replicates[ms] == 4 for ms in (5, 10))
+    assert "20 runs; the full grid with 4 processes per point has 36" in said.replace("\n", " ")
+    before = finished(volmark)
+    again = start(volmark, "halve", path, "--replicates", 4, "--eta", 2, "--format", "csv").communicate(timeout=120)[0]
+    assert list(csv.DictReader(io.StringIO(again)))[0]["ms"] == "5" and finished(volmark) == before  # nothing is run again
