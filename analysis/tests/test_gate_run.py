@@ -10,7 +10,7 @@ import pytest
 from volmark_analysis.__main__ import main
 from volmark_analysis.gate import stages
 from volmark_analysis.gate.builds import MachineError, resolve
-from volmark_analysis.gate.program import count_instructions, read_scenario, read_totals
+from volmark_analysis.gate.program import count_instructions, kept_count, read_scenario, read_totals
 
 FAKE = Path(__file__).parent / "fake_volmark.py"
 
@@ -184,6 +184,27 @@ def test_counts_are_of_the_frames_of_the_last_orbit(here, monkeypatch):
     warming, counting = (here / "bin" / "calls").read_text().splitlines()
     assert "--tool=none" in warming and "--orbits 0" in warming and "--tool=callgrind" in counting and "--orbits 2" in counting
     assert all(line.startswith(f"{here}/shaders 0 ") and "--profile instructions" in line and "--device llvmpipe" in line for line in (warming, counting))
+
+
+def test_counts_of_a_revision_are_kept_until_something_changes(here, monkeypatch):
+    program = Path(build("a")).resolve() / "volmark"
+    fake_valgrind(here / "bin", monkeypatch, [9000, 1, 2, 3, 40, 50, 60, 80, 777])
+
+    def counted(kept=here / "kept"):
+        before = len(calls("bin")) if (here / "bin" / "calls").exists() else 0
+        scenario = read_scenario(program, Path("configs/ci/small.json"))
+        assert kept_count(kept, program, scenario, 0, here / "counts", here / "shaders").per_frame == 70
+        return any("callgrind" in " ".join(call) for call in calls("bin")[before:])
+
+    assert counted() and not counted() and not counted()
+    assert counted(None) and counted(None)
+    write_scenario("configs/ci/small.json", "small", ["dvr", "iso"], title="another")
+    assert counted() and not counted()
+    monkeypatch.setenv("FAKE_DRIVER", "2")
+    assert counted() and not counted()
+    for path in (here / "kept").iterdir():
+        path.write_text("[6")
+    assert counted() and not counted()
 
 
 def test_what_cannot_be_counted_says_why(here, capsys, monkeypatch):

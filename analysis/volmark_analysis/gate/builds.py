@@ -21,6 +21,8 @@ class MachineError(Exception):
 class Build:
     side: Side
     program: Path
+    counts: Path | None = None
+    """Where counts of instructions are kept; None for a folder, whose program may change."""
 
 
 def resolve(text: str, option: str, cache: Path, say: Callable[[str], None]) -> Build:
@@ -33,7 +35,7 @@ def resolve(text: str, option: str, cache: Path, say: Callable[[str], None]) -> 
     commit = _commit(text)
     if commit is None:
         raise InputError(f"{option}: {text!r} is neither a folder nor a revision of the repository in {Path.cwd()}")
-    return Build(Side(text, commit), _built(commit, cache, say))
+    return Build(Side(text, commit), _built(commit, cache, say), cache / f"{commit[:12]}.counts")
 
 
 def program_in(folder: Path, option: str) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -100,6 +101,33 @@ class Count:
     per_frame: float
     frames: list[int]
     """Of the last orbit, one by one."""
+
+
+def kept_count(kept: Path | None, program: Path, scenario: Scenario, point: int, folder: Path, shaders: Path) -> Count:
+    """count_instructions, or what it found before for the same program, scenario, drivers, processor and valgrind. Raises
+    MachineError."""
+    if kept is None or shutil.which("valgrind") is None:
+        return count_instructions(program, scenario, point, folder, shaders)
+    facts = [scenario.config.read_text(encoding="utf-8"), str(point), _checked([str(program), "device"]),
+             _checked(["valgrind", "--version"]), _cpu_model()]
+    path = kept / f"{hashlib.sha256(json.dumps(facts).encode()).hexdigest()[:32]}.json"
+    try:
+        frames = [int(n) for n in json.loads(path.read_text(encoding="utf-8"))]
+        return Count(sum(frames) / len(frames), frames)
+    except (OSError, ValueError, TypeError, ZeroDivisionError):
+        pass  # counted for the first time, or a file that was cut
+    count = count_instructions(program, scenario, point, folder, shaders)
+    kept.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(count.frames) + "\n", encoding="utf-8")
+    return count
+
+
+def _cpu_model() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return ""
+    return next((line for line in lines if line.startswith("model name")), "")
 
 
 def count_instructions(program: Path, scenario: Scenario, point: int, folder: Path, shaders: Path,

@@ -20,7 +20,7 @@ from .calibration import calibration_text, read_calibration
 from .evidence import BASE, CANDIDATE, CONFIRMATION, FIRST, VERSION, Evidence, Side, point_name, read_evidence
 from .exact import Exact
 from .markdown import to_markdown
-from .program import Scenario, count_instructions, run
+from .program import Scenario, kept_count, run
 from .rules import Rules
 from .verdicts import Verdict, judge, suspected_points, to_json
 
@@ -110,7 +110,7 @@ def _count(gate: Gate) -> None:
         side, scenario, point = job
         folder = gate.folder / "instructions" / f"{scenario.name}-{point['index']}-{side}"
         try:
-            count = count_instructions(gate.programs[side], scenario, point["index"], folder, gate.shaders)
+            count = kept_count(gate.builds[side].counts, gate.programs[side], scenario, point["index"], folder, gate.shaders)
         except (MachineError, InputError) as error:
             return job, None, str(error)
         done += 1
