@@ -175,6 +175,16 @@ def test_pairs_are_of_equal_replicates_and_poses(tmp_path):
         judge(read_evidence(folder), Rules())
 
 
+def test_commits_of_folders_are_what_their_programs_say(tmp_path):
+    folder = write_gate(tmp_path, {("ci", "dvr"): (make_side(), make_side(provenance={"program": {"commit": "dead"}}))}, 1)
+    asked = json.loads((folder / "gate.json").read_text())
+    assert read_evidence(folder).candidate.commit == asked["candidate"]["commit"]
+    asked["base"]["commit"] = asked["candidate"]["commit"] = ""
+    (folder / "gate.json").write_text(json.dumps(asked))
+    evidence = read_evidence(folder)
+    assert (evidence.base.commit, evidence.candidate.commit) == ("", "dead")
+
+
 def test_json_holds_what_was_decided(tmp_path):
     folder = write_gate(tmp_path, {("ci", "dvr"): (make_side(), make_side(cpu=1.2)), ("other", "iso"): SAME_SIDES})
     evidence = read_evidence(folder)

@@ -29,7 +29,7 @@ def resolve(text: str, option: str, cache: Path, say: Callable[[str], None]) -> 
     """`text`: a folder with a program (a build folder or an installed prefix), or a revision of this repository."""
     folder = Path(text)
     if folder.is_dir():
-        return Build(Side(text, commit_of(folder)), program_in(folder, option))
+        return Build(Side(text), program_in(folder, option))
     if folder.exists():
         raise InputError(f"{option}: {text} is a file, expected a folder with the program volmark, or a revision")
     commit = _commit(text)
@@ -43,11 +43,6 @@ def program_in(folder: Path, option: str) -> Path:
         if place.is_file() and os.access(place, os.X_OK):
             return place.resolve()
     raise InputError(f"{option}: {folder}: no program volmark or bin/volmark there")
-
-
-def commit_of(folder: Path) -> str:
-    """What a folder in a work tree was probably built from: a hint for the reader; run.json has the program's own."""
-    return _git(["-C", str(folder), "rev-parse", "HEAD"]) or ""
 
 
 def _commit(revision: str) -> str | None:

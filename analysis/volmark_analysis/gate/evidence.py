@@ -100,7 +100,15 @@ def read_evidence(folder: Path) -> Evidence:
     if not points:
         raise InputError(f"{folder}: no experiment in {FIRST}/; expected what a gate left there")
     _add_instructions(folder / "instructions.json", points)
+    for side, build in zip(sides, (BASE, CANDIDATE)):
+        side.commit = side.commit or _commit_of([run for point in points.values() for run in point.completed(build)])
     return Evidence(folder, *sides, list(points.values()), titles)
+
+
+def _commit_of(runs: list[Run]) -> str:
+    """What the program says that it was built from; empty if it doesn't."""
+    programs = [run.provenance.get("program") for run in runs]
+    return next((str(p["commit"]) for p in programs if isinstance(p, dict) and p.get("commit")), "")
 
 
 def points_of(experiment: Experiment, stage: str = FIRST) -> list[Point]:
