@@ -118,6 +118,17 @@ def test_failures_are_bounded_and_told(tmp_path, capsys):
     grid.check_all_once(replicates=1)
 
 
+def test_a_program_that_runs_nowhere_is_told(tmp_path, capsys):
+    grid = Grid(tmp_path)
+    refuses = tmp_path / "refuses"
+    refuses.write_text(f'#!/bin/sh\n[ "$1" = run ] && {{ echo no device here >&2; exit 3; }}\nexec {grid.arguments[3]} "$@"\n')
+    refuses.chmod(0o755)
+    assert main([*grid.arguments, "--program", str(refuses)]) == 1
+    captured = capsys.readouterr()
+    assert "nothing was run" in captured.out and captured.err.count("  given up: ") == 10 and "2 more batches" in captured.err
+    assert "no device here" in captured.err
+
+
 def test_bad_input_is_one_line(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("volmark_analysis.grid.dask_workers._SECONDS_TO_CONNECT", 1)
     grid = Grid(tmp_path)

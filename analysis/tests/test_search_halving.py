@@ -38,6 +38,7 @@ class Grid:
         planned = [PlannedPoint(i, {}, str(i), {"scene": self.scene[i], "measure": {"interleave": 1}}) for i in self.ms]
         monkeypatch.setattr(Job, "points", lambda job: planned)
         monkeypatch.setattr(Job, "folder", Path("/results/grid"))
+        monkeypatch.setattr(Job, "has_begun", True)
         monkeypatch.setattr(halving, "hand_out", self.hand_out)
         monkeypatch.setattr(halving, "load_experiment", lambda folder: SimpleNamespace(folder=folder))
         monkeypatch.setattr(halving, "point_results", lambda experiment: [self.result(i) for i in self.measured])

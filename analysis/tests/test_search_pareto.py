@@ -122,3 +122,17 @@ def test_nothing_to_show_is_one_line(experiment_folder, capsys):
     assert main(["pareto", str(experiment_folder), "--min-psnr", "99"]) == 2
     said = capsys.readouterr().err
     assert "no point with median_ms and psnr_db" in said and len(said.splitlines()) == 1
+
+
+def test_the_report_of_a_grid_shows_its_fronts(large_folder, experiment_folder, tmp_path, capsys):
+    page = (large_folder / "report.html").read_text()
+    section = page[page.index('<section id="best">'):]
+    section = section[:section.index("</section>")]
+    assert main(["pareto", str(large_folder), "--format", "csv"]) == 0
+    printed = capsys.readouterr().out
+    assert (large_folder / "tables" / "pareto.csv").read_text() == printed
+    kept = [r for r in csv.DictReader(io.StringIO(printed)) if r["place"] != DOMINATED]
+    assert section.count("<tr>") == 1 + len(kept) and section.count("<figure>") == len({r["draws"] for r in kept}) == 2
+    # Two or three points of a scene need no search.
+    assert main(["report", str(experiment_folder), "-o", str(tmp_path / "report.html")]) == 0
+    assert "Best parameters" not in (tmp_path / "report.html").read_text()

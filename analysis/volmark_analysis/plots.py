@@ -148,7 +148,7 @@ def plots_of(results: list[PointResult]) -> list[Plot]:
         Plot("passes", "Time by pass", "Mean time of each pass, from the breakdown orbits: stamping every pass may slow a "
              "frame, so the sum can exceed the mean frame time.",
              _thinned(_with(panels, lambda r: r.pass_ms), MOST_BARS), draw_passes, lambda p: bars_height(p) + 0.3))
-    return [_limited(p) for p in plots + _counter_plots(panels) if p.panels]
+    return [limited(p) for p in plots + _counter_plots(panels) if p.panels]
 
 
 def _scene_panels(results: list[PointResult]) -> list[Panel]:
@@ -180,7 +180,7 @@ def _thinned(panels: list[Panel], most: int) -> list[Panel]:
     return [thin(p) for p in panels]
 
 
-def _limited(plot: Plot) -> Plot:
+def limited(plot: Plot) -> Plot:
     panels = evenly(plot.panels, MOST_PANELS)
     if len(panels) == len(plot.panels):
         return plot

@@ -21,6 +21,9 @@ from .load import Experiment
 from .pivots import WRITERS as PIVOT_WRITERS
 from .pivots import pivot_of
 from .points import PointResult, device_of, label_text, varying_axes
+from .search.front_plot import front_plot, write_front_plot
+from .search.objective import DEFAULT_OBJECTIVE
+from .search.pareto import Front, front_table, parameter_fronts
 
 
 def write_report(experiment: Experiment, results: list[PointResult], path: Path, low1: str = "low1_avg_ms") -> None:
@@ -33,6 +36,8 @@ def write_report(experiment: Experiment, results: list[PointResult], path: Path,
         html = render(experiment, results, found, low1)
         write_tables(experiment.folder / "tables", experiment, results, found, low1)
         plots.write_plots(experiment.folder / "plots", results)
+        if fronts := parameter_fronts(results):
+            write_front_plot(experiment.folder / "plots", front_plot(fronts, DEFAULT_OBJECTIVE), results)
         staged.write_text(html, encoding="utf-8")
         os.replace(staged, path)
     except OSError as error:
@@ -48,9 +53,13 @@ def write_tables(folder: Path, experiment: Experiment, results: list[PointResult
     full = tables.Table("results", list(all_columns(results).values()), results, "", [])
     shown = tables.results_table(experiment, results, low1)
     work, pivot = tables.work_table(experiment, results), pivot_of(experiment, results)
+    fronts = parameter_fronts(results)
     folder.mkdir(parents=True, exist_ok=True)
     for suffix, write in tables.WRITERS.items():
         (folder / f"results.{suffix}").write_text(write(full if suffix == "csv" else shown), encoding="utf-8")
+        if fronts:
+            (folder / f"pareto.{suffix}").write_text(
+                write(front_table(experiment, results, fronts, DEFAULT_OBJECTIVE, suffix == "csv")), encoding="utf-8")
         if work is not None:
             (folder / f"work.{suffix}").write_text(write(work), encoding="utf-8")
         if pivot is not None:
@@ -68,6 +77,7 @@ def render(experiment: Experiment, results: list[PointResult], found: list[compa
     work = tables.work_table(experiment, results)
     findings, by_scene = summary.findings(results, found)
     picture_sets, pictures_note = sheet.picture_sets(experiment, results)
+    fronts = parameter_fronts(results)
     script = environment.get_template("report.js").render()
     # The browser runs this one script and loads nothing, whatever the data hold.
     script_hash = f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
@@ -80,7 +90,7 @@ def render(experiment: Experiment, results: list[PointResult], found: list[compa
         comparisons=[_comparison_row(c) for c in found[:MOST_COMPARISONS]], comparison_count=len(found),
         comparison_note=comparisons.explanation(), table=_shown_table(tables.results_table(experiment, results, low1)),
         work=None if work is None else _shown_table(work), grid=heatmaps.grid_of(results),
-        map_bar=sheet.bar_uri("grid"), plots=_shown_plots(results), picture_sets=picture_sets,
+        best=_best_section(experiment, results, fronts) if fronts else None, map_bar=sheet.bar_uri("grid"), plots=_shown_plots(results), picture_sets=picture_sets,
         pictures_note=pictures_note, scales=sheet.scales(), techniques=_techniques(results),
         provenance=_provenance(results, axes), scenario=json.dumps(experiment.scenario, indent=1),
         definitions=_definitions())
@@ -127,17 +137,24 @@ def _comparison_row(c: comparisons.Comparison) -> dict:
 
 def _shown_plots(results: list[PointResult]) -> list[dict]:
     """One small figure per panel, so that it stays readable on a narrow screen; light and dark."""
-    styles, shown = plots.styles_of(results), []
-    for plot in plots.plots_of(results):
-        figures = []
-        for panel in plot.panels:
-            svg = plots.svg_of(plots.figure_of(plot, [panel], styles, titles=False))
-            figures.append({"title": panel.title, "note": panel.note, "alt": f"{plot.title}: {panel.title}",
-                            "light": sheet.uri("image/svg+xml", svg),
-                            "dark": sheet.uri("image/svg+xml", plots.in_dark(svg))})
-        shown.append({"title": plot.title, "explanation": plot.explanation, "note": plot.note, "figures": figures,
-                      "choice": plot.choice, "folded": plot.name.startswith("counter_")})
-    return shown
+    styles = plots.styles_of(results)
+    return [_shown_plot(plot, styles) for plot in plots.plots_of(results)]
+
+
+def _shown_plot(plot: plots.Plot, styles) -> dict:
+    figures = []
+    for panel in plot.panels:
+        svg = plots.svg_of(plots.figure_of(plot, [panel], styles, titles=False))
+        figures.append({"title": panel.title, "note": panel.note, "alt": f"{plot.title}: {panel.title}",
+                        "light": sheet.uri("image/svg+xml", svg), "dark": sheet.uri("image/svg+xml", plots.in_dark(svg))})
+    return {"title": plot.title, "explanation": plot.explanation, "note": plot.note, "figures": figures,
+            "choice": plot.choice, "folded": plot.name.startswith("counter_")}
+
+
+def _best_section(experiment: Experiment, results: list[PointResult], fronts: list[Front]) -> dict:
+    plot = plots.limited(front_plot(fronts, DEFAULT_OBJECTIVE))
+    return {"table": _shown_table(front_table(experiment, results, fronts, DEFAULT_OBJECTIVE, full=False)),
+            "plot": _shown_plot(plot, plots.styles_of(results))}
 
 
 # Techniques, provenance ---------------------------------------------------------------------------------------

@@ -21,6 +21,9 @@ INTERRUPTED = 130
 _ROUNDS = 2
 """Runs that other processes had claimed are looked at once more when all else is done."""
 
+_MOST_NAMED = 10
+"""Batches that were given up; beyond, they are counted."""
+
 _DESCRIPTION = """Run a scenario on several workers: batches of points go to whoever is free. Without --scheduler, on
 workers of this machine's own.
 One worker measures one thing at a time; give it a device of its own, or timings disturb each other."""
@@ -119,7 +122,8 @@ def _grid(options) -> int:
     except KeyboardInterrupt:
         progress.say("interrupted: the same command goes on from here")
         return INTERRUPTED
-    job.write_index()
+    if job.has_begun:
+        job.write_index()
     return _conclude(job, lost)
 
 
@@ -128,6 +132,8 @@ def _run(workers: Workers, job: Job, batches: list[Batch], progress: Progress) -
     for _ in range(_ROUNDS):
         progress.start(sum(len(b.points) for b in batches))
         lost += hand_out(workers, job, batches, progress)
+        if not job.has_begun:
+            break
         given_up = {entry.batch for entry in lost}
         left = set(job.status()["left_points"])
         batches = [b for b in batches if b not in given_up and left & set(b.points)]
@@ -137,14 +143,17 @@ def _run(workers: Workers, job: Job, batches: list[Batch], progress: Progress) -
 
 
 def _conclude(job: Job, lost: list[Lost]) -> int:
+    for entry in lost[:_MOST_NAMED]:
+        print(f"  given up: points {', '.join(map(str, entry.batch.points))}: {entry.reason}", file=sys.stderr)
+    if len(lost) > _MOST_NAMED:
+        print(f"  and {len(lost) - _MOST_NAMED} more batches", file=sys.stderr)
+    if not job.has_begun:
+        print("nothing was run")
+        return 1
     status = job.status()
     done = status["planned"] - status["left"] - status["running"]
     print(f"{done} of {status['planned']} runs done: {status['completed']} completed, {status['failed']} failed, "
           f"{status['unsupported']} unsupported" + (f"; {status['running']} under way elsewhere" if status["running"] else ""))
-    for entry in lost[:10]:
-        print(f"  given up: points {', '.join(map(str, entry.batch.points))}: {entry.reason}", file=sys.stderr)
-    if len(lost) > 10:
-        print(f"  and {len(lost) - 10} more batches", file=sys.stderr)
     print(f"report:  PYTHONPATH=analysis python3 -m volmark_analysis report {job.folder}")
     return 0 if status["left"] + status["running"] + status["failed"] == 0 else 1
 

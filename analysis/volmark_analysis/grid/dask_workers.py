@@ -20,7 +20,8 @@ from .progress import Progress
 
 RESOURCE = "GPU"
 _MOST_STARTS = 4
-"""Of a local worker that keeps dying."""
+"""Of a local worker that keeps dying within _SECONDS_OF_HEALTH of its start."""
+_SECONDS_OF_HEALTH = 60.0
 _SECONDS_TO_CONNECT = 10
 _SECONDS_TO_STOP = 20.0
 _SECONDS_TO_FETCH = 5.0
@@ -150,6 +151,7 @@ class _WorkerProcess:
 
     def _start(self) -> None:
         self._starts += 1
+        self._started = time.monotonic()
         with open(self._log, "ab") as log:
             # A session of its own: Ctrl-C on the terminal is for us alone, who then stop the workers in order.
             self._process = subprocess.Popen(self._command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
@@ -161,7 +163,11 @@ class _WorkerProcess:
 
     def start_again_if_dead(self, progress: Progress) -> None:
         code = self._process.poll()
-        if code is None or self._starts >= _MOST_STARTS:
+        if code is None:
+            return
+        if time.monotonic() - self._started > _SECONDS_OF_HEALTH:
+            self._starts = 0
+        if self._starts >= _MOST_STARTS:
             return
         progress.say(f"{self._name} ended ({_cause(code, self._log)}): started again")
         self._start()

@@ -46,6 +46,11 @@ class Job:
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise InputError(f"{self.config}: no scenario with a name ({error})") from None
 
+    @property
+    def has_begun(self) -> bool:
+        """The program has opened the experiment."""
+        return (self.folder / "experiment.json").is_file()
+
     def expand_command(self) -> list[str]:
         return [str(self.program), "expand", str(self.config), *self.scenario_options]
 

@@ -61,6 +61,8 @@ def halve(workers: Workers, job: Job, question: Question, eta: int, replicates: 
         progress.start(len(chosen), f"rung {number} of {len(rungs)}, {count} process{'es' if count > 1 else ''} each: ")
         lost += hand_out(workers, job.with_assignment(f"measure.replicates={count}"), batches, progress)
         runs += len(chosen) * (count - (rungs[number - 2] if number > 1 else 0))
+        if not job.has_begun:
+            raise InputError(f"{job.config}: nothing was run: {lost[0].reason}")
         experiment = load_experiment(job.folder)
         contests = _contests(experiment, chosen, question)
         progress.say(_summary(contests, number, len(rungs), count))

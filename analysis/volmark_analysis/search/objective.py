@@ -47,11 +47,10 @@ def measured(result: PointResult, objective: str) -> Measured | None:
     """None if the point has no such time. The value is of all frames. An interval resamples processes and then their
     orbits, each with its own statistic, and is laid around the value in proportion."""
     column, statistic = OBJECTIVES[objective]
-    processes = [_orbits_of(run, column) for run in result.completed]
-    frames = [times for orbits in processes for times in orbits]
-    if not frames or any(np.isnan(times).any() for times in frames):
+    value = result.statistics.get(objective)
+    if value is None:
         return None
-    value = statistics_of(np.concatenate(frames))[statistic]
+    processes = [_orbits_of(run, column) for run in result.completed]
     by_orbit = [[statistics_of(times)[statistic] for times in orbits] for orbits in processes]
     if len(processes) >= REPLICATES_FOR_INTERVAL:
         weights = resampling_weights([len(orbits) for orbits in by_orbit], np.random.default_rng(1))
@@ -66,6 +65,7 @@ def measured(result: PointResult, objective: str) -> Measured | None:
 
 def _orbits_of(run: Run, column: str) -> list[np.ndarray]:
     orbits, values = run.headline_values("orbit"), run.headline_values(column)
+    orbits, values = orbits[~np.isnan(values)], values[~np.isnan(values)]
     return [values[orbits == orbit] for orbit in np.unique(orbits)]
 
 

@@ -8,13 +8,15 @@ import numpy as np
 
 from ..columns import Column, all_columns
 from ..load import Experiment
-from ..points import PointResult
+from ..points import PointResult, varying_axes
 from ..tables import Table, caption_of
 from .best import left_out_notes, search_columns
-from .candidates import Contest, error_of
-from .objective import HIGHER_IS_BETTER, time_note
+from .candidates import Contest, contests_of, error_of
+from .objective import DEFAULT_OBJECTIVE, HIGHER_IS_BETTER, time_note
 
 FRONT, UNDECIDED, DOMINATED = "front", "undecided", "dominated"
+_LEAST_POINTS = 5
+"""Of a scene, for a front in the report: fewer are compared in the table at a glance."""
 
 
 @dataclass
@@ -46,6 +48,15 @@ def front_of(contest: Contest, error: str) -> Front:
         beaten = (high < low[i]) & (worst >= best_pictures[i]).all(axis=1)
         places.setdefault(id(r), DOMINATED if beaten.any() else UNDECIDED)
     return Front(contest, error, places)
+
+
+def parameter_fronts(results: list[PointResult]) -> list[Front]:
+    """What a report shows of a grid: the fronts of PSNR of each scene that has enough points; none where points differ in
+    no parameter."""
+    if not set(varying_axes(results)) - {"technique", "scene", "device", "driver", "build", "point"}:
+        return []
+    contests = contests_of(results, ["scene"], DEFAULT_OBJECTIVE, [], "psnr_db")
+    return [front_of(contest, "psnr_db") for contest in contests if len(contest.points) >= _LEAST_POINTS]
 
 
 def _goodness(r: PointResult, error: str) -> float:
