@@ -8,6 +8,7 @@ import json
 import os
 from importlib import resources
 from pathlib import Path
+from typing import Sequence
 
 import jinja2
 import markupsafe
@@ -33,10 +34,11 @@ def write_report(experiment: Experiment, results: list[PointResult], path: Path,
         path.parent.mkdir(parents=True, exist_ok=True)
         staged.touch()  # a target that can't be written is found before the work
         found = comparisons.technique_comparisons(results)
-        html = render(experiment, results, found, low1)
-        write_tables(experiment.folder / "tables", experiment, results, found, low1)
+        fronts = parameter_fronts(results)
+        html = render(experiment, results, found, low1, fronts)
+        write_tables(experiment.folder / "tables", experiment, results, found, fronts, low1)
         plots.write_plots(experiment.folder / "plots", results)
-        if fronts := parameter_fronts(results):
+        if fronts:
             write_front_plot(experiment.folder / "plots", front_plot(fronts, DEFAULT_OBJECTIVE), results)
         staged.write_text(html, encoding="utf-8")
         os.replace(staged, path)
@@ -48,12 +50,11 @@ def write_report(experiment: Experiment, results: list[PointResult], path: Path,
 
 
 def write_tables(folder: Path, experiment: Experiment, results: list[PointResult], found: list[comparisons.Comparison],
-                 low1: str) -> None:
+                 fronts: list[Front], low1: str) -> None:
     """Results, work, pivot and comparison tables in all formats; results.csv has every column."""
     full = tables.Table("results", list(all_columns(results).values()), results, "", [])
     shown = tables.results_table(experiment, results, low1)
     work, pivot = tables.work_table(experiment, results), pivot_of(experiment, results)
-    fronts = parameter_fronts(results)
     folder.mkdir(parents=True, exist_ok=True)
     for suffix, write in tables.WRITERS.items():
         (folder / f"results.{suffix}").write_text(write(full if suffix == "csv" else shown), encoding="utf-8")
@@ -69,15 +70,14 @@ def write_tables(folder: Path, experiment: Experiment, results: list[PointResult
 
 
 def render(experiment: Experiment, results: list[PointResult], found: list[comparisons.Comparison],
-           low1: str = "low1_avg_ms") -> str:
-    """The page. `found`: the comparisons of techniques."""
+           low1: str = "low1_avg_ms", fronts: Sequence[Front] = ()) -> str:
+    """The page. `found`: the comparisons of techniques; `fronts`: of error against time."""
     environment = jinja2.Environment(loader=jinja2.FunctionLoader(_template), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     axes = varying_axes(results)
     work = tables.work_table(experiment, results)
     findings, by_scene = summary.findings(results, found)
     picture_sets, pictures_note = sheet.picture_sets(experiment, results)
-    fronts = parameter_fronts(results)
     script = environment.get_template("report.js").render()
     # The browser runs this one script and loads nothing, whatever the data hold.
     script_hash = f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
@@ -151,7 +151,7 @@ def _shown_plot(plot: plots.Plot, styles) -> dict:
             "choice": plot.choice, "folded": plot.name.startswith("counter_")}
 
 
-def _best_section(experiment: Experiment, results: list[PointResult], fronts: list[Front]) -> dict:
+def _best_section(experiment: Experiment, results: list[PointResult], fronts: Sequence[Front]) -> dict:
     plot = plots.limited(front_plot(fronts, DEFAULT_OBJECTIVE))
     return {"table": _shown_table(front_table(experiment, results, fronts, DEFAULT_OBJECTIVE, full=False)),
             "plot": _shown_plot(plot, plots.styles_of(results))}
