@@ -6,6 +6,7 @@ import xml.etree.ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection, PathCollection
 from made_points import made_point, noisy
 from volmark_analysis.__main__ import main
 from volmark_analysis.plots import TEXT, figure_of, styles_of
@@ -93,12 +94,18 @@ def test_the_plot_shows_every_point_and_joins_the_front(seed):
     found = front(points)
     plot = front_plot([found], "median_ms")
     axes = figure_of(plot, plot.panels, styles_of(points)).axes[0]
-    drawn = [line for line in axes.lines if line.get_marker() == "o" and len(line.get_xdata()) == 1]
-    assert sorted(line.get_xdata()[0] for line in drawn) == pytest.approx(sorted(t.value for t in found.contest.times.values()))
+    drawn = [x for c in axes.collections if isinstance(c, PathCollection) for x, _ in c.get_offsets()]
+    assert sorted(drawn) == pytest.approx(sorted(t.value for t in found.contest.times.values()))
     (joined,) = [line for line in axes.lines if line.get_color() == TEXT and line.get_linestyle() == "-"]
     assert list(joined.get_xdata()) == [found.contest.times[id(r)].value for r in found.members(FRONT)]
-    bounds = {tuple(line.get_xdata()) for line in axes.lines}
+    bars = [segment for c in axes.collections if isinstance(c, LineCollection) for segment in c.get_segments()]
+    bounds = {(a[0], b[0]) for a, b in bars if a[1] == b[1]}
     assert all((t.low, t.high) in bounds for t in found.contest.times.values())
+    ends = {tuple(sorted((a[1], b[1]))) for a, b in bars if a[0] == b[0]}
+    top = max(worst(r) for r in points if worst(r) < np.inf) + 8
+    for r in points:
+        best = max(np.inf if p["identical"] else p["psnr_db"] for p in r.completed[0].pictures)
+        assert (min(worst(r), top), min(best, top)) in ends
     names = [text.get_text() for text in axes.get_legend().get_texts()]
     assert len([n for n in names if n[0].isdigit() and "step" in n]) == len(found.members(FRONT))
     assert f"{len(found.members(DOMINATED))} dominated" in names
