@@ -15,6 +15,7 @@ import markupsafe
 import numpy as np
 
 from . import __version__, comparisons, heatmaps, plots, sheet, statistics, summary, tables
+from .beside import Beside
 from .columns import all_columns
 from .errors import InputError
 from .limits import MOST_COMPARISONS, MOST_LINES_OF_TEXT, MOST_VALUES, first_of
@@ -35,11 +36,15 @@ def write_report(experiment: Experiment, results: list[PointResult], path: Path,
         staged.touch()  # a target that can't be written is found before the work
         found = comparisons.technique_comparisons(results)
         fronts = parameter_fronts(results)
-        html = render(experiment, results, found, low1, fronts)
-        write_tables(experiment.folder / "tables", experiment, results, found, fronts, low1)
-        plots.write_plots(experiment.folder / "plots", results)
-        if fronts:
-            write_front_plot(experiment.folder / "plots", front_plot(fronts, DEFAULT_OBJECTIVE), results)
+
+        def write_files() -> None:
+            write_tables(experiment.folder / "tables", experiment, results, found, fronts, low1)
+            plots.write_plots(experiment.folder / "plots", results)
+            if fronts:
+                write_front_plot(experiment.folder / "plots", front_plot(fronts, DEFAULT_OBJECTIVE), results)
+
+        with Beside(write_files):
+            html = render(experiment, results, found, low1, fronts)
         staged.write_text(html, encoding="utf-8")
         os.replace(staged, path)
     except OSError as error:
@@ -90,8 +95,8 @@ def render(experiment: Experiment, results: list[PointResult], found: list[compa
         comparisons=[_comparison_row(c) for c in found[:MOST_COMPARISONS]], comparison_count=len(found),
         comparison_note=comparisons.explanation(), table=_shown_table(tables.results_table(experiment, results, low1)),
         work=None if work is None else _shown_table(work), grid=heatmaps.grid_of(results),
-        best=_best_section(experiment, results, fronts) if fronts else None, map_bar=sheet.bar_uri("grid"), plots=_shown_plots(results), picture_sets=picture_sets,
-        pictures_note=pictures_note, scales=sheet.scales(), techniques=_techniques(results),
+        best=_best_section(experiment, results, fronts) if fronts else None, map_bar=sheet.bar_uri("grid"),
+        plots=_shown_plots(results), picture_sets=picture_sets, pictures_note=pictures_note, scales=sheet.scales(), techniques=_techniques(results),
         provenance=_provenance(results, axes), scenario=json.dumps(experiment.scenario, indent=1),
         definitions=_definitions())
 
