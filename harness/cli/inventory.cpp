@@ -85,6 +85,7 @@ std::string valueText(const ParameterValue& value) {
 
 std::string rangeText(const ParameterDescriptor& parameter) {
   if (!parameter.choices.empty()) return fmt::format("{}", fmt::join(parameter.choices, " | "));
+  if (!parameter.values.empty()) return fmt::format("{}", fmt::join(parameter.values, " | "));
   if (parameter.minimum && parameter.maximum)
     return fmt::format("{} to {} {}", *parameter.minimum, *parameter.maximum, parameter.unit);
   return std::string(typeNameOf(parameter.defaultValue));
@@ -107,7 +108,7 @@ std::string historyText(History history) {
 }
 
 std::string shadingText(const TechniqueInfo& info) {
-  constexpr const char* names[] = {"none", "lambert", "phong", "gooch"};
+  constexpr const char* names[] = {"none", "lambert", "phong", "gooch", "ggx"};
   std::vector<std::string> models;
   for (const ShadingModel model : info.shadings)
     models.emplace_back(names[static_cast<int>(model)]);

@@ -7,7 +7,7 @@ function(volmark_embed_shaders target prefix namespace)
     list(APPEND files ${absolute})
   endforeach()
   string(REPLACE ";" "|" joined "${files}")
-  set(output ${CMAKE_CURRENT_BINARY_DIR}/${target}_shaders.cpp)
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/${target}_${prefix}_shaders.cpp)
   add_custom_command(
     OUTPUT ${output}
     COMMAND ${CMAKE_COMMAND} -DPREFIX=${prefix} -DNAMESPACE=${namespace} -DOUTPUT=${output} -DFILES=${joined} -P

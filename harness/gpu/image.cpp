@@ -132,6 +132,14 @@ void Image::createViews() {
     check(vkCreateImageView(m_device->handle(), &info, nullptr, &view), "vkCreateImageView");
     m_layerViews.push_back(view);
   }
+  info.viewType = viewType(m_description.type);
+  info.subresourceRange = {aspect(), 0, 1, 0, m_description.layers};
+  for (std::uint32_t level = 0; level < m_description.mipLevels; ++level) {
+    info.subresourceRange.baseMipLevel = level;
+    VkImageView view = VK_NULL_HANDLE;
+    check(vkCreateImageView(m_device->handle(), &info, nullptr, &view), "vkCreateImageView");
+    m_levelViews.push_back(view);
+  }
 }
 
 Image::~Image() {
@@ -151,6 +159,7 @@ Image& Image::operator=(Image&& other) noexcept {
   m_memory = std::exchange(other.m_memory, VK_NULL_HANDLE);
   m_view = std::exchange(other.m_view, VK_NULL_HANDLE);
   m_layerViews = std::exchange(other.m_layerViews, {});
+  m_levelViews = std::exchange(other.m_levelViews, {});
   m_allocated = std::exchange(other.m_allocated, 0);
   return *this;
 }
@@ -158,13 +167,15 @@ Image& Image::operator=(Image&& other) noexcept {
 void Image::destroy() noexcept {
   if (!m_device) return;
   const VkDevice device = m_device->handle();
-  for (const VkImageView view : m_layerViews)
-    vkDestroyImageView(device, view, nullptr);
+  for (const std::vector<VkImageView>* views : {&m_layerViews, &m_levelViews})
+    for (const VkImageView view : *views)
+      vkDestroyImageView(device, view, nullptr);
   if (m_view) vkDestroyImageView(device, m_view, nullptr);
   if (m_handle) vkDestroyImage(device, m_handle, nullptr);
   if (m_memory) vkFreeMemory(device, m_memory, nullptr);
   if (m_allocated > 0 && !m_description.name.empty()) m_device->ledger().remove(m_description.name, m_allocated);
   m_layerViews.clear();
+  m_levelViews.clear();
   m_view = VK_NULL_HANDLE;
   m_handle = VK_NULL_HANDLE;
   m_memory = VK_NULL_HANDLE;

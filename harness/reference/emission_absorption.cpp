@@ -59,8 +59,10 @@ bool stopsEarly(const VolumeSamples& samples, const Gathered& gathered) {
 glm::dvec4 alongPoints(const Emission& emission, const Path& path, const VolumeSamples& samples) {
   const double step = samples.stepVoxels * emission.voxelMm;
   Gathered gathered;
-  for (long i = 0; path.entry + double(i) * step < path.exit && !stopsEarly(samples, gathered); ++i) {
-    const double t = path.entry + double(i) * step;
+  const auto place = [&](long i) { return path.boxEntry + double(i) * step; };
+  const long first = static_cast<long>(std::ceil((path.entry - path.boxEntry) / step));
+  for (long i = first; place(i) < path.exit && !stopsEarly(samples, gathered); ++i) {
+    const double t = place(i);
     const glm::dvec4 sample = emission.medium.evaluate(valueAt(emission, path, t));
     if (sample.a <= 0) continue;
     const double opacity = 1 - std::pow(1 - sample.a, samples.stepVoxels);
@@ -81,15 +83,19 @@ glm::dvec4 alongSlabs(const Emission& emission, const Path& path, const VolumeSa
   Gathered gathered;
   if (path.entry == path.exit) return gathered.result();
   double front = valueAt(emission, path, path.entry);
-  for (long i = 0; path.entry + double(i) * step < path.exit && !stopsEarly(samples, gathered); ++i) {
-    const double start = path.entry + double(i) * step;
-    const double end = std::min(path.entry + double(i + 1) * step, path.exit);
+  double start = path.entry;
+  const long whole = static_cast<long>(std::floor((path.entry - path.boxEntry) / step));
+  for (long i = whole + 1; start < path.exit && !stopsEarly(samples, gathered); ++i) {
+    const double end = std::min(path.boxEntry + double(i) * step, path.exit);
     const double back = valueAt(emission, path, end);
     glm::dvec4 slab = emission.medium.slab(front, back, samples.stepVoxels);
+    const double share = std::min((end - start) / step, 1.0);
+    if (slab.a > 0) {
+      if (start == path.entry || end == path.exit) slab = shortened(slab, share);
+      gathered.add(lit(responseAt(emission, path, start), slab));
+    }
     front = back;
-    if (slab.a <= 0) continue;
-    if (end == path.exit) slab = shortened(slab, std::min((end - start) / step, 1.0));
-    gathered.add(lit(responseAt(emission, path, start), slab));
+    start = end;
   }
   return gathered.result();
 }

@@ -48,6 +48,7 @@ std::optional<Path> pathThroughPixel(const Grid& grid, std::span<const ClippingP
     side[axis] = 1;
     if (!keepHalfSpace(side, -halfExtent, path) || !keepHalfSpace(-side, -halfExtent, path)) return std::nullopt;
   }
+  path.boxEntry = path.entry;
   for (const ClippingPlane& plane : planes)
     if (!keepHalfSpace(plane.normal, plane.offset, path)) return std::nullopt;
   return path;

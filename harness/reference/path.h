@@ -8,14 +8,15 @@
 
 namespace volmark::reference {
 
-/// Points are origin + t * direction, t in world units, entry <= t <= exit.
+/// Points are origin + t * direction, t in world units, boxEntry <= entry <= t <= exit.
 struct Path {
   glm::dvec3 origin;
   glm::dvec3 direction;   ///< normalised
   double cosine;          ///< of the angle to the view direction
-  double entry;           ///< >= 0
+  double entry;           ///< >= boxEntry, behind the clipping planes
   double exit;            ///< equal to the entry in a box of no thickness
   glm::dvec3 entryNormal; ///< of the side or plane entered by, to the eye; -direction if the eye is inside
+  double boxEntry = 0;    ///< into the box, >= 0: where the grid of samples starts
 
   glm::dvec3 at(double t) const { return origin + t * direction; }
 };

@@ -17,8 +17,10 @@ Picture renderIsosurface(const Scene& scene, const FrameInputs& inputs, int view
 /// How a volume is integrated.
 struct VolumeSamples {
   enum class Form {
-    point,         ///< colour and opacity at entry + i*step, opacity corrected for the step
-    preintegrated, ///< slabs between consecutive samples, the scalar linear in between
+    /// Colour and opacity at i*step from the entry into the box (not behind clipping planes), opacity corrected for the
+    /// step.
+    point,
+    preintegrated, ///< slabs between these places, the scalar linear in between; clipping planes and exit cut slabs
     converged,     ///< emission-absorption integral, refined until a ray changes by less than tolerance
   } form = Form::converged;
   double stepVoxels = 1;         ///< point and preintegrated

@@ -184,51 +184,12 @@ PointKey isovalue() {
   return derived(std::move(key), kFirstOfScene);
 }
 
-std::shared_ptr<const TransferFunction> resolveTransferFunction(const JsonValue& value, const SceneDescription& scene) {
-  if (!value.json().is_string()) return std::make_shared<TransferFunction>(parseTransferFunction("inline", value));
-  const std::string name = value.text();
-  std::vector<std::string> names;
-  for (const auto& [known, function] : scene.transferFunctions) {
-    if (known == name) return std::make_shared<TransferFunction>(function);
-    names.push_back(known);
-  }
-  const std::string nearest = suggestion(name, names);
-  value.fail(fmt::format("unknown transfer function \"{}\" of scene \"{}\"{} allowed: {}", name, scene.name,
-                         nearest.empty() ? "," : nearest, quotedList(names)));
-}
-
-nlohmann::json transferFunctionSchema() {
-  const nlohmann::json point = {
-      {"type", "object"},
-      {"properties", {{"value", numberSchema(0, 1)}, {"color", vectorSchema(0, 1)}, {"opacity", numberSchema(0, 1)}}},
-      {"required", {"value", "color", "opacity"}},
-      {"additionalProperties", false}};
-  return {{"anyOf",
-           {{{"type", "string"}, {"minLength", 1}},
-            {{"type", "object"},
-             {"properties", {{"points", {{"type", "array"}, {"items", point}, {"minItems", 1}}}}},
-             {"required", {"points"}},
-             {"additionalProperties", false}}}}};
-}
-
 PointKey transferFunction() {
   PointKey key = plain(
       "transfer_function", "", "Control points, or the name of one of the scene's.", transferFunctionSchema(),
       [](const JsonValue& value, PointSettings& s) { s.transferFunction = resolveTransferFunction(value, s.scene); },
-      [](const PointSettings& s) {
-        nlohmann::json points = nlohmann::json::array();
-        for (const ControlPoint& point : s.transferFunction->points())
-          points.push_back({{"value", canonical(point.value)},
-                            {"color", toJson(point.color)},
-                            {"opacity", canonical(point.opacity)}});
-        return nlohmann::json{{"points", points}};
-      });
-  key.check = [](const JsonValue& value) {
-    if (value.json().is_string())
-      value.text();
-    else
-      parseTransferFunction("inline", value);
-  };
+      [](const PointSettings& s) { return toJson(*s.transferFunction); });
+  key.check = checkTransferFunction;
   return derived(std::move(key), kFirstOfScene);
 }
 
@@ -259,7 +220,8 @@ std::vector<PointKey> contentKeys() {
                                std::vector<std::pair<std::string, ShadingModel>>{{"none", ShadingModel::none},
                                                                                  {"lambert", ShadingModel::lambert},
                                                                                  {"phong", ShadingModel::phong},
-                                                                                 {"gooch", ShadingModel::gooch}},
+                                                                                 {"gooch", ShadingModel::gooch},
+                                                                                 {"ggx", ShadingModel::ggx}},
                                "How surfaces and shaded samples are lit."),
                            "the technique's first"));
   result.push_back(vector(

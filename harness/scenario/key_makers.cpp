@@ -24,6 +24,7 @@ nlohmann::json parameterSchema(const ParameterDescriptor& parameter) {
   if (parameter.minimum) schema["minimum"] = *parameter.minimum;
   if (parameter.maximum) schema["maximum"] = *parameter.maximum;
   if (!parameter.choices.empty()) schema["enum"] = parameter.choices;
+  if (!parameter.values.empty()) schema["enum"] = parameter.values;
   return schema;
 }
 
@@ -96,6 +97,48 @@ Isovalue resolveIsovalue(const JsonValue& value, const SceneDescription& scene) 
 
 nlohmann::json toJson(const Isovalue& isovalue) {
   return {{isovalue.raw ? "raw" : "normalized", canonical(isovalue.value)}};
+}
+
+std::shared_ptr<const TransferFunction> resolveTransferFunction(const JsonValue& value, const SceneDescription& scene) {
+  if (!value.json().is_string()) return std::make_shared<TransferFunction>(parseTransferFunction("inline", value));
+  const std::string name = value.text();
+  std::vector<std::string> names;
+  for (const auto& [known, function] : scene.transferFunctions) {
+    if (known == name) return std::make_shared<TransferFunction>(function);
+    names.push_back(known);
+  }
+  const std::string nearest = suggestion(name, names);
+  value.fail(fmt::format("unknown transfer function \"{}\" of scene \"{}\"{} allowed: {}", name, scene.name,
+                         nearest.empty() ? "," : nearest, quotedList(names)));
+}
+
+nlohmann::json transferFunctionSchema() {
+  const nlohmann::json point = {
+      {"type", "object"},
+      {"properties", {{"value", numberSchema(0, 1)}, {"color", vectorSchema(0, 1)}, {"opacity", numberSchema(0, 1)}}},
+      {"required", {"value", "color", "opacity"}},
+      {"additionalProperties", false}};
+  return {{"anyOf",
+           {{{"type", "string"}, {"minLength", 1}},
+            {{"type", "object"},
+             {"properties", {{"points", {{"type", "array"}, {"items", point}, {"minItems", 1}}}}},
+             {"required", {"points"}},
+             {"additionalProperties", false}}}}};
+}
+
+void checkTransferFunction(const JsonValue& value) {
+  if (value.json().is_string())
+    value.text();
+  else
+    parseTransferFunction("inline", value);
+}
+
+nlohmann::json toJson(const TransferFunction& function) {
+  nlohmann::json points = nlohmann::json::array();
+  for (const ControlPoint& point : function.points())
+    points.push_back(
+        {{"value", canonical(point.value)}, {"color", toJson(point.color)}, {"opacity", canonical(point.opacity)}});
+  return {{"points", points}};
 }
 
 } // namespace volmark::keys

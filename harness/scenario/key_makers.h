@@ -111,4 +111,10 @@ void checkIsovalue(const JsonValue& value);
 Isovalue resolveIsovalue(const JsonValue& value, const SceneDescription& scene);
 nlohmann::json toJson(const Isovalue& isovalue);
 
+/// The same of a transfer function: {"points"} or a name in the scene.
+nlohmann::json transferFunctionSchema();
+void checkTransferFunction(const JsonValue& value);
+std::shared_ptr<const TransferFunction> resolveTransferFunction(const JsonValue& value, const SceneDescription& scene);
+nlohmann::json toJson(const TransferFunction& function);
+
 } // namespace volmark::keys

@@ -41,9 +41,17 @@ struct CameraPath {
   std::vector<Key> keys; ///< Kind::keys: at equal intervals, linear in between
 };
 
+/// The transfer function moves to another one and back by a sine: share 0.5 + 0.5 sin(2 pi cycles phase) of `to`
+/// (Faludi et al. 2021, section 4.5).
+struct TransferFunctionBlend {
+  std::shared_ptr<const TransferFunction> to; ///< never null
+  double cycles = 1;                          ///< over the timeline
+};
+
 struct TimelineSettings {
   CameraPath camera;
   std::optional<std::pair<Isovalue, Isovalue>> isovalueSweep; ///< from, to: linear over the timeline
+  std::optional<TransferFunctionBlend> blend;
   std::vector<ClippingPlane> clippingPlanes;
   bool playTimeSteps = false; ///< all time steps once over the timeline
 };

@@ -126,6 +126,36 @@ PointKey isovalueSweep() {
   return key;
 }
 
+PointKey blend() {
+  PointKey key = plain(
+      "timeline.blend", "",
+      "The transfer function moves to another one and back by a sine, in whole or part cycles; null: none.",
+      {{"anyOf",
+        {{{"type", "null"}},
+         {{"type", "object"},
+          {"properties", {{"to", transferFunctionSchema()}, {"cycles", numberSchema(0, 1000)}}},
+          {"required", {"to"}},
+          {"additionalProperties", false}}}}},
+      [](const JsonValue& value, PointSettings& s) {
+        JsonObject object(value);
+        TransferFunctionBlend read{.to = resolveTransferFunction(object.at("to"), s.scene)};
+        if (const auto cycles = object.find("cycles")) read.cycles = cycles->number(0, 1000);
+        object.refuseOthers();
+        s.timeline.blend = std::move(read);
+      },
+      [](const PointSettings& s) {
+        if (!s.timeline.blend) return nlohmann::json();
+        return nlohmann::json{{"to", toJson(*s.timeline.blend->to)}, {"cycles", canonical(s.timeline.blend->cycles)}};
+      });
+  key.check = [](const JsonValue& value) {
+    JsonObject object(value);
+    checkTransferFunction(object.at("to"));
+    if (const auto cycles = object.find("cycles")) cycles->number(0, 1000);
+    object.refuseOthers();
+  };
+  return key;
+}
+
 ClippingPlane readClippingPlane(const JsonValue& value) {
   ClippingPlane plane;
   JsonObject object(value);
@@ -206,6 +236,7 @@ std::vector<PointKey> viewKeys() {
                             "degrees", "About the scene's up axis, from its front.")),
       onlyIf(onKeys, cameraKeys()),
       isovalueSweep(),
+      blend(),
       clippingPlanes(),
       boolean(
           "timeline.play_time_steps", [](auto& s) -> auto& { return s.timeline.playTimeSteps; },

@@ -21,6 +21,7 @@ std::string textOf(const ParameterValue& value) {
 std::string allowedText(const ParameterDescriptor& descriptor) {
   if (!descriptor.choices.empty()) return fmt::format("\"{}\"", fmt::join(descriptor.choices, "\", \""));
   const std::string unit = descriptor.unit.empty() ? "" : " " + descriptor.unit;
+  if (!descriptor.values.empty()) return fmt::format("{}{}", fmt::join(descriptor.values, ", "), unit);
   if (descriptor.minimum && descriptor.maximum)
     return fmt::format("{} {} to {}{}", typeNameOf(descriptor.defaultValue), *descriptor.minimum, *descriptor.maximum,
                        unit);
@@ -72,6 +73,11 @@ ParameterDescriptor ParameterDescriptor::integer(std::string name, std::int64_t 
           {}};
 }
 
+ParameterDescriptor ParameterDescriptor::oneOf(std::string name, std::int64_t value, std::vector<std::int64_t> values,
+                                               std::string unit, std::string documentation) {
+  return {std::move(name), value, std::move(unit), std::move(documentation), {}, {}, {}, std::move(values)};
+}
+
 ParameterDescriptor ParameterDescriptor::number(std::string name, double value, double minimum, double maximum,
                                                 std::string unit, std::string documentation) {
   return {std::move(name), value, std::move(unit), std::move(documentation), minimum, maximum, {}};
@@ -96,6 +102,8 @@ std::optional<std::string> whyNotAllowed(const ParameterDescriptor& descriptor, 
               (!descriptor.maximum || *number <= *descriptor.maximum);
   if (const auto* text = std::get_if<std::string>(&value); allowed && text && !descriptor.choices.empty())
     allowed = std::find(descriptor.choices.begin(), descriptor.choices.end(), *text) != descriptor.choices.end();
+  if (const auto* integer = std::get_if<std::int64_t>(&value); allowed && integer && !descriptor.values.empty())
+    allowed = std::find(descriptor.values.begin(), descriptor.values.end(), *integer) != descriptor.values.end();
   if (allowed) return std::nullopt;
   return fmt::format("found {}, allowed: {}", textOf(value), allowedText(descriptor));
 }

@@ -37,6 +37,55 @@ glm::dvec4 TransferFunction::evaluate(double value) const {
   return result;
 }
 
+namespace {
+
+/// What a function is on either side of a jump; equal elsewhere. Opacity is not capped.
+struct Sides {
+  glm::dvec4 below;
+  glm::dvec4 above;
+};
+
+Sides sidesAt(const std::vector<ControlPoint>& points, double value) {
+  const auto at = [](const ControlPoint& point) { return glm::dvec4(point.color, point.opacity); };
+  const auto less = [](const ControlPoint& point, double v) { return point.value < v; };
+  const auto more = [](double v, const ControlPoint& point) { return v < point.value; };
+  const auto first = std::lower_bound(points.begin(), points.end(), value, less); // at or above
+  const auto next = std::upper_bound(points.begin(), points.end(), value, more);  // above
+  if (first != next) return {at(*first), at(*(next - 1))};
+  if (first == points.begin()) return {at(points.front()), at(points.front())};
+  if (first == points.end()) return {at(points.back()), at(points.back())};
+  const ControlPoint& low = *(first - 1);
+  const double t = (value - low.value) / (first->value - low.value);
+  const glm::dvec4 between = glm::mix(at(low), at(*first), t);
+  return {between, between};
+}
+
+} // namespace
+
+TransferFunction TransferFunction::blend(const TransferFunction& from, const TransferFunction& to, double share) {
+  assert(share >= 0 && share <= 1);
+  std::vector<double> values;
+  for (const TransferFunction* function : {&from, &to})
+    for (const ControlPoint& point : function->m_points)
+      values.push_back(point.value);
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+
+  std::vector<ControlPoint> points;
+  const auto add = [&](double value, const glm::dvec4& mixed) {
+    points.push_back({value, glm::dvec3(mixed), mixed.a});
+  };
+  for (const double value : values) {
+    const Sides a = sidesAt(from.m_points, value);
+    const Sides b = sidesAt(to.m_points, value);
+    const glm::dvec4 below = glm::mix(a.below, b.below, share);
+    const glm::dvec4 above = glm::mix(a.above, b.above, share);
+    add(value, below);
+    if (above != below) add(value, above);
+  }
+  return {from.name() + " to " + to.name(), std::move(points)};
+}
+
 std::vector<glm::vec4> TransferFunction::table(int size) const {
   assert(size >= 2);
   std::vector<glm::vec4> result(static_cast<std::size_t>(size));

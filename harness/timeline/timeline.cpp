@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace volmark {
 
@@ -110,6 +111,11 @@ int Timeline::timeStepAt(double phase) const {
   return std::clamp(static_cast<int>(std::floor(phase * m_timeSteps + 1e-9)), 0, m_timeSteps - 1);
 }
 
+double Timeline::blendAt(double phase) const {
+  if (!m_settings.blend) return 0;
+  return 0.5 + 0.5 * std::sin(2 * std::numbers::pi * m_settings.blend->cycles * phase);
+}
+
 FrameInputs Timeline::at(double phase) const {
   assert(phase >= 0 && phase <= 1);
   FrameInputs inputs;
@@ -122,6 +128,9 @@ FrameInputs Timeline::at(double phase) const {
   }
   inputs.isovalue = isovalueAt(phase);
   inputs.transferFunction = m_transferFunction;
+  if (const auto& blend = m_settings.blend)
+    inputs.transferFunction =
+        std::make_shared<TransferFunction>(TransferFunction::blend(*m_transferFunction, *blend->to, blendAt(phase)));
   inputs.clippingPlanes = m_settings.clippingPlanes;
   inputs.timeStep = timeStepAt(phase);
   inputs.light = m_light;
@@ -146,7 +155,7 @@ bool Timeline::jumpsBetween(double previousPhase, double phase) const {
 Changes Timeline::between(double previousPhase, double phase) const {
   return {.camera = !equal(poseAt(previousPhase), poseAt(phase)),
           .isovalue = isovalueAt(previousPhase) != isovalueAt(phase),
-          .transferFunction = false,
+          .transferFunction = blendAt(previousPhase) != blendAt(phase),
           .clippingPlanes = false,
           .timeStep = timeStepAt(previousPhase) != timeStepAt(phase),
           .light = false,

@@ -23,6 +23,8 @@ private:
   Pose poseAt(double phase) const;
   double isovalueAt(double phase) const;
   int timeStepAt(double phase) const;
+  /// Of the other transfer function; 0 without a blend.
+  double blendAt(double phase) const;
   /// Whether the camera was cut on the way, or across the seam of two passes.
   bool jumpsBetween(double previousPhase, double phase) const;
 

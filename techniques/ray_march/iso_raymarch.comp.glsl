@@ -3,7 +3,7 @@
 // One invocation is one pixel of one view (z); a workgroup is 8 x 8 pixels. Nothing runs after it.
 #version 460
 
-#include <ray_march/march.glsl>
+#include <parts/march.glsl>
 
 layout(set = 0, binding = kBindingOwn, rgba32f) uniform writeonly image2DArray normalImage;
 
@@ -59,7 +59,7 @@ void main() {
   bool hit = false;
   bool inPicture = all(lessThan(pixel, frame.size));
   Path path;
-  bool entered = inPicture && makePath(grid, pixel, view, path);
+  bool entered = inPicture && makePath(grid, pixel, view, false, path);
   bool shadedByGradient = false;
   vec3 surfaceNormal = vec3(0); // of counting frames
   if (entered) {

@@ -1,11 +1,13 @@
 #include "iso_raymarch.h"
 
-#include "marcher.h"
+#include "parts/marcher.h"
 #include "volmark/gpu/target.h"
 
 #include <optional>
 
 namespace volmark::ray_march {
+
+using namespace parts;
 
 namespace {
 
@@ -16,7 +18,7 @@ public:
     m_bisections = static_cast<std::uint32_t>(preparation.parameters.integer("bisections"));
     m_marcher.emplace(preparation,
                       MarcherDescription{.shader = {.path = "ray_march/iso_raymarch.comp.glsl"},
-                                         .own = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                                         .own = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},
                       recorder);
     m_memory = memoryAdded(before, preparation.device->ledger().items());
   }
@@ -26,8 +28,8 @@ public:
   void update(const Changes&, const FrameInputs&, Recorder&) override {}
 
   void draw(const Frame& frame, Recorder& recorder) override {
-    m_marcher->march(frame, m_seed, MarchConstants{.bisections = m_bisections},
-                     gpu::StorageImage{frame.target->normal.view()}, recorder);
+    const gpu::Resource normals[] = {gpu::StorageImage{frame.target->normal.view()}};
+    m_marcher->march(frame, m_seed, MarchConstants{.bisections = m_bisections}, normals, recorder);
   }
 
   std::vector<CounterValue> counters() const override {
@@ -54,7 +56,8 @@ TechniqueInfo describe() {
           .section = "4, \"direct isosurface raycasting\" (DIR); the march itself: 3.1",
           .draws = Draws::isosurface,
           .maximumViews = gpu::kMaxViews,
-          .shadings = {ShadingModel::lambert, ShadingModel::none, ShadingModel::phong, ShadingModel::gooch},
+          .shadings = {ShadingModel::lambert, ShadingModel::none, ShadingModel::phong, ShadingModel::gooch,
+                       ShadingModel::ggx},
           .parameters = {stepParameter(0.5),
                          ParameterDescriptor::integer("bisections", 6, 0, 16, "",
                                                       "Halvings of the interval that holds the crossing."),

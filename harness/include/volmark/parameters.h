@@ -18,15 +18,19 @@ using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 struct ParameterDescriptor {
   std::string name; ///< snake_case
   ParameterValue defaultValue;
-  std::string unit;                 ///< "voxel", "ms", "" for none
-  std::string documentation;        ///< one sentence
-  std::optional<double> minimum;    ///< numbers only, inclusive
-  std::optional<double> maximum;    ///< numbers only, inclusive
-  std::vector<std::string> choices; ///< strings only; empty allows any
+  std::string unit;                   ///< "voxel", "ms", "" for none
+  std::string documentation;          ///< one sentence
+  std::optional<double> minimum;      ///< numbers only, inclusive
+  std::optional<double> maximum;      ///< numbers only, inclusive
+  std::vector<std::string> choices;   ///< strings only; empty allows any
+  std::vector<std::int64_t> values{}; ///< integers only; empty allows all from minimum to maximum
 
   static ParameterDescriptor boolean(std::string name, bool value, std::string documentation);
   static ParameterDescriptor integer(std::string name, std::int64_t value, std::int64_t minimum, std::int64_t maximum,
                                      std::string unit, std::string documentation);
+  /// One of a few integers: powers of two, for example.
+  static ParameterDescriptor oneOf(std::string name, std::int64_t value, std::vector<std::int64_t> values,
+                                   std::string unit, std::string documentation);
   static ParameterDescriptor number(std::string name, double value, double minimum, double maximum, std::string unit,
                                     std::string documentation);
   static ParameterDescriptor choice(std::string name, std::string value, std::vector<std::string> choices,

@@ -14,7 +14,7 @@ namespace volmark {
 
 /// How surfaces and shaded samples are lit. The formulas are in shaders/volmark/shading.glsl and, written
 /// independently, in reference/shading.cpp; harness/README.md defines them.
-enum class ShadingModel : std::uint8_t { none, lambert, phong, gooch };
+enum class ShadingModel : std::uint8_t { none, lambert, phong, gooch, ggx };
 
 struct Shading {
   ShadingModel model = ShadingModel::lambert;

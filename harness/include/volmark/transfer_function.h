@@ -25,6 +25,9 @@ public:
   /// there on). Throws InputError.
   TransferFunction(std::string name, std::vector<ControlPoint> points);
 
+  /// Colours and opacities (1-share) of `from` and share of `to`, at every scalar. `share` in [0,1].
+  static TransferFunction blend(const TransferFunction& from, const TransferFunction& to, double share);
+
   const std::string& name() const { return m_name; }
   const std::vector<ControlPoint>& points() const { return m_points; }
 

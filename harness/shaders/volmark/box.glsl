@@ -63,16 +63,21 @@ bool intersectBox(Ray ray, vec3 low, vec3 high, out float entry, out float exit)
   return entry <= exit;
 }
 
+// Cuts the interval to the kept side of all clipping planes.
+void cutByClippingPlanes(FrameConstants constants, Ray ray, inout RayInterval interval) {
+  // A fixed count, so that compilers unroll it and need no copy of the array.
+  for (int i = 0; i < kMaxClippingPlanes; ++i)
+    if (uint(i) < constants.clippingPlaneCount)
+      cutByPlane(ray, constants.clippingPlanes[i].xyz, constants.clippingPlanes[i].w, interval);
+}
+
 // The part of the ray inside the box of voxel centres and on the kept side of all clipping planes; false if
 // there is none. `entryNormal` is of the box side or plane that the ray enters by and points to the eye (back
 // along the ray if the eye is inside).
 bool clipRay(FrameConstants constants, Ray ray, out float entry, out float exit, out vec3 entryNormal) {
   RayInterval interval = wholeRay(ray);
   cutByBox(ray, constants.boxMinimum, constants.boxMaximum, interval);
-  // A fixed count, so that compilers unroll it and need no copy of the array.
-  for (int i = 0; i < kMaxClippingPlanes; ++i)
-    if (uint(i) < constants.clippingPlaneCount)
-      cutByPlane(ray, constants.clippingPlanes[i].xyz, constants.clippingPlanes[i].w, interval);
+  cutByClippingPlanes(constants, ray, interval);
   entry = interval.entry;
   exit = interval.exit;
   entryNormal = interval.normal;

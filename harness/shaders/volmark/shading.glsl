@@ -9,6 +9,7 @@ const uint kShadingNone = 0u;
 const uint kShadingLambert = 1u;
 const uint kShadingPhong = 2u;
 const uint kShadingGooch = 3u;
+const uint kShadingGgx = 4u;
 
 // Unit normal towards lower values, or zero where the gradient (per world unit) is shorter than 1e-6.
 vec3 normalOfGradient(vec3 gradient) {
@@ -25,6 +26,30 @@ vec3 specular(vec3 normal, vec3 toLight, vec3 toEye, vec3 lightColor) {
   return 0.3 * power * lightColor;
 }
 
+float toTheFifth(float x) {
+  float square = x * x;
+  return square * square * x;
+}
+
+// Disney's diffuse term and a GGX lobe of roughness 0.5, for a normal on the eye's side.
+vec3 shadeGgx(vec3 color, vec3 n, vec3 toLight, vec3 toEye, vec3 lightColor, float ambient) {
+  const float kAlpha2 = 0.0625;
+  float nl = dot(n, toLight);
+  if (nl <= 0.0) return ambient * color;
+  vec3 h = normalize(toLight + toEye);
+  float nv = max(dot(n, toEye), 0.0);
+  float nh = dot(n, h);
+  float lh = dot(toLight, h);
+  float grazing = lh * lh - 0.5;
+  float diffuse = (1.0 + grazing * toTheFifth(1.0 - nl)) * (1.0 + grazing * toTheFifth(1.0 - nv));
+  float spread = nh * nh * (kAlpha2 - 1.0) + 1.0;
+  float visibility = 0.5 / (nl * sqrt(nv * nv * (1.0 - kAlpha2) + kAlpha2) +
+                            nv * sqrt(nl * nl * (1.0 - kAlpha2) + kAlpha2) + 1e-5);
+  float fresnel = 0.04 + 0.96 * toTheFifth(1.0 - lh);
+  float lobe = kAlpha2 / (spread * spread) * visibility * fresnel;
+  return ambient * color + nl * lightColor * ((1.0 - ambient) * diffuse * color + lobe);
+}
+
 // Linear colour, not clamped. `normal`, `toLight` and `toEye` are unit vectors; the normal may point either way
 // and is turned towards the eye; a zero normal (no gradient) gives `color`.
 vec3 shade(uint model, vec3 color, vec3 normal, vec3 toLight, vec3 toEye, vec3 lightColor, float ambient) {
@@ -36,6 +61,7 @@ vec3 shade(uint model, vec3 color, vec3 normal, vec3 toLight, vec3 toEye, vec3 l
     vec3 warm = vec3(0.4, 0.4, 0.0) + 0.5 * color;
     return mix(cool, warm, 0.5 * (1.0 + lambert)) + specular(n, toLight, toEye, lightColor);
   }
+  if (model == kShadingGgx) return shadeGgx(color, n, toLight, toEye, lightColor, ambient);
   vec3 diffuse = color * (ambient + (1.0 - ambient) * lightColor * max(lambert, 0.0));
   if (model == kShadingPhong) diffuse += specular(n, toLight, toEye, lightColor);
   return diffuse;

@@ -87,6 +87,15 @@ TEST(Volume, LastStepEndsAtTheExitForSlabsOnly) {
   EXPECT_NEAR(volumeInTheMiddle(scene, inputs, samplesOf(Form::preintegrated, 1.5)).a, 1 - std::pow(0.8, 4), 1e-6);
 }
 
+TEST(Volume, ClippingPlanesMoveNoSample) {
+  // 4 voxel lengths from z = 2 to -2; the plane keeps z <= 1.3: samples at 1, 0 and -1, slabs from 1.3 on.
+  const Scene scene = sceneOf(column(5), [](const glm::dvec3&) { return 0.5; });
+  FrameInputs inputs = inputsWith(opacities({{0, 0.2}, {1, 0.2}}));
+  inputs.clippingPlanes = {{-glm::normalize(inputs.views[0].pose.position), -1.3}};
+  EXPECT_NEAR(volumeInTheMiddle(scene, inputs, samplesOf(Form::point)).a, 1 - std::pow(0.8, 3), 1e-6);
+  EXPECT_NEAR(volumeInTheMiddle(scene, inputs, samplesOf(Form::preintegrated)).a, 1 - std::pow(0.8, 3.3), 1e-6);
+}
+
 TEST(Volume, PointSamplesByHand) {
   // Values 0, 1/4, 1/2, 3/4 (and 1 at the exit, which is no sample), opacity equal to the value.
   const Scene scene = sceneOf(column(5), rampAlong(column(5)));

@@ -65,6 +65,27 @@ TEST(Shading, ObliqueLightByHand) {
   expectColor(respond(ShadingModel::gooch, light, {0, 0, 1}, kEye).lit(kColor), 0.2 * cool + 0.8 * warm + highlight);
 }
 
+TEST(Shading, GgxByHand) {
+  // Light, eye and normal in one line: d = 1, D = 1/a2, V = 0.25 (with 1e-5 in the sum), F = 0.04.
+  const double lobe = 16 * 0.5 / (2 + 1e-5) * 0.04;
+  expectColor(respond(ShadingModel::ggx, Light{}, {0, 0, 1}, kEye).lit(kColor), kColor + lobe);
+  // Light from behind leaves the ambient share.
+  Light behind = lightFrom({0, 0.6, -0.8});
+  behind.ambient = 0.2;
+  expectColor(respond(ShadingModel::ggx, behind, {0, 0, 1}, kEye).lit(kColor), 0.2 * kColor);
+}
+
+// Helmholtz: without the cosine, light and eye can change places.
+TEST(Shading, GgxIsReciprocal) {
+  Light light = lightFrom({0.5, 0.3, 0.7});
+  light.ambient = 0;
+  const glm::dvec3 eye = glm::normalize(glm::dvec3(-0.2, 0.6, 0.4));
+  const glm::dvec3 there = respond(ShadingModel::ggx, light, {0, 0, 1}, eye).lit(kColor) / light.direction.z;
+  const Light back{.headlight = false, .direction = eye, .ambient = 0};
+  const glm::dvec3 again = respond(ShadingModel::ggx, back, {0, 0, 1}, light.direction).lit(kColor) / eye.z;
+  expectColor(there, again);
+}
+
 // Lambert never gives more than it gets: its colour stays between the ambient share and the whole.
 TEST(Shading, LambertKeepsWithinItsEnergy) {
   for (int i = 0; i < 100; ++i) {

@@ -237,6 +237,20 @@ TEST_F(TimelineTest, OnlyWhatMovesIsReported) {
   EXPECT_FALSE(orbit.isovalue || orbit.timeStep || orbit.cut);
 }
 
+TEST_F(TimelineTest, TransferFunctionsBlendByASine) {
+  settings.transferFunction = std::make_shared<TransferFunction>("a", std::vector<ControlPoint>{{0, {1, 0, 0}, 0.2}});
+  const auto to = std::make_shared<TransferFunction>("b", std::vector<ControlPoint>{{0, {0, 1, 0}, 0.6}});
+  EXPECT_EQ(timeline().at(0.1).transferFunction, settings.transferFunction);
+  settings.timeline.blend = TransferFunctionBlend{.to = to, .cycles = 2};
+  const auto opacityAt = [&](double phase) { return timeline().at(phase).transferFunction->evaluate(0.5).a; };
+  EXPECT_NEAR(opacityAt(0), 0.4, 1e-12);
+  EXPECT_NEAR(opacityAt(1.0 / 8), 0.6, 1e-12);
+  EXPECT_NEAR(opacityAt(3.0 / 8), 0.2, 1e-12);
+  EXPECT_NEAR(timeline().at(1.0 / 8).transferFunction->evaluate(0.5).g, 1, 1e-12);
+  EXPECT_TRUE(timeline().between(0, 0.1).transferFunction);
+  EXPECT_FALSE(timeline().between(0.1, 0.1).transferFunction);
+}
+
 TEST_F(TimelineTest, EqualPhasesGiveEqualInputs) {
   settings.timeline.isovalueSweep = {Isovalue{false, 0.1}, Isovalue{false, 0.9}};
   const FrameInputs a = timeline().at(0.123), b = timeline().at(0.123);

@@ -1,6 +1,6 @@
 #include "dvr_raymarch.h"
+#include "parts/testing/session.h"
 #include "reference/reference.h"
-#include "session.h"
 
 #include <gmock/gmock.h>
 
@@ -8,6 +8,9 @@
 #include <cmath>
 
 namespace volmark::ray_march {
+
+using namespace parts;
+
 namespace {
 
 constexpr int kWidth = 64;
@@ -115,7 +118,8 @@ TEST(DvrRaymarch, PreintegrationKeepsThinLayersAtLongSteps) {
 }
 
 TEST(DvrRaymarch, ShadesAsTheReference) {
-  for (const ShadingModel model : {ShadingModel::lambert, ShadingModel::phong, ShadingModel::gooch}) {
+  for (const ShadingModel model :
+       {ShadingModel::lambert, ShadingModel::phong, ShadingModel::gooch, ShadingModel::ggx}) {
     const Scene scene = rippleScene(model);
     FrameInputs inputs = inputsFor(scene);
     inputs.light = {.headlight = false,

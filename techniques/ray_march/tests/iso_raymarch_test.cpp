@@ -1,6 +1,6 @@
 #include "iso_raymarch.h"
+#include "parts/testing/session.h"
 #include "reference/reference.h"
-#include "session.h"
 
 #include <gmock/gmock.h>
 
@@ -8,6 +8,9 @@
 #include <cmath>
 
 namespace volmark::ray_march {
+
+using namespace parts;
+
 namespace {
 
 constexpr int kWidth = 96;
@@ -112,7 +115,7 @@ TEST(IsoRaymarch, EachBisectionHalvesTheError) {
 
 TEST(IsoRaymarch, ShadesAsTheReference) {
   for (const ShadingModel model :
-       {ShadingModel::none, ShadingModel::lambert, ShadingModel::phong, ShadingModel::gooch}) {
+       {ShadingModel::none, ShadingModel::lambert, ShadingModel::phong, ShadingModel::gooch, ShadingModel::ggx}) {
     const Scene scene = rippleScene(model);
     FrameInputs inputs = inputsFor(scene);
     inputs.light = {.headlight = false,

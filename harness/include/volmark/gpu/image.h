@@ -20,8 +20,8 @@ struct ImageDescription {
 };
 
 /// Move-only owner of an optimal-tiling image with a view of everything (2-D images: as an array of all
-/// layers) and a view of each layer. Starts in VK_IMAGE_LAYOUT_UNDEFINED. Throws UnsupportedError when the
-/// extent, the format or the memory is beyond the device.
+/// layers), a view of each layer and, with several mip levels, a view of each level. Starts in
+/// VK_IMAGE_LAYOUT_UNDEFINED. Throws UnsupportedError when the extent, the format or the memory is beyond the device.
 class Image {
 public:
   Image() = default;
@@ -33,6 +33,8 @@ public:
   VkImage handle() const { return m_handle; }
   VkImageView view() const { return m_view; }
   VkImageView layerView(std::uint32_t layer) const { return m_layerViews.at(layer); }
+  /// One mip level, all layers; usable as a storage image.
+  VkImageView levelView(std::uint32_t level) const { return m_levelViews.at(level); }
   VkImageAspectFlags aspect() const;
   const ImageDescription& description() const { return m_description; }
   MemoryItem memory() const { return {m_description.name, m_allocated}; } ///< what it added to the ledger
@@ -49,6 +51,7 @@ private:
   VkDeviceMemory m_memory = VK_NULL_HANDLE;
   VkImageView m_view = VK_NULL_HANDLE;
   std::vector<VkImageView> m_layerViews;
+  std::vector<VkImageView> m_levelViews;
   VkDeviceSize m_allocated = 0;
 };
 

@@ -1,10 +1,10 @@
-#include "transfer_table.h"
+#include "parts/transfer_table.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace volmark::ray_march {
+namespace volmark::parts {
 
 namespace {
 
@@ -29,6 +29,19 @@ void setVisibleRange(TransferTable& table) {
 
 } // namespace
 
+std::vector<bool> visibleEntries(const TransferTable& table) {
+  std::vector<bool> visible(static_cast<std::size_t>(table.width));
+  for (int i = 0; i < table.width; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    if (table.height == 1) {
+      visible[index] = table.entries[index].a > 0;
+    } else if (i + 1 < table.width && table.entries[(index + 1) * table.width + index].a > 0) {
+      visible[index] = visible[index + 1] = true; // the slab from entry i to the next
+    }
+  }
+  return visible;
+}
+
 TransferTable postClassifiedTable(const TransferFunction& function, int size, double stepVoxels) {
   TransferTable table{.width = size, .height = 1};
   table.entries.reserve(static_cast<std::size_t>(size));
@@ -47,4 +60,4 @@ TransferTable preintegratedTable(const TransferFunction& function, int size, dou
   return table;
 }
 
-} // namespace volmark::ray_march
+} // namespace volmark::parts

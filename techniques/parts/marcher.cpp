@@ -1,4 +1,4 @@
-#include "marcher.h"
+#include "parts/marcher.h"
 
 #include "volmark/gpu/frame_constants.h"
 #include "volmark/gpu/target.h"
@@ -6,7 +6,12 @@
 #include <algorithm>
 #include <cassert>
 
-namespace volmark::ray_march {
+// Written by volmark_embed_shaders() in CMakeLists.txt.
+namespace volmark_parts_embedded {
+extern const std::vector<volmark::gpu::EmbeddedShader> shaders;
+}
+
+namespace volmark::parts {
 
 namespace {
 
@@ -14,11 +19,12 @@ gpu::Filtering filteringOf(const ParameterValues& parameters) {
   return parameters.text("filtering") == "shader" ? gpu::Filtering::shader : gpu::Filtering::hardware;
 }
 
-gpu::PipelineLayoutDescription layoutOf(VkDescriptorType own) {
-  return {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                       VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, own},
-          .pushConstantBytes = sizeof(MarchConstants)};
+gpu::PipelineLayoutDescription layoutOf(const std::vector<VkDescriptorType>& own) {
+  std::vector<VkDescriptorType> bindings = {
+      VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,  VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,         VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
+  bindings.insert(bindings.end(), own.begin(), own.end());
+  return {.bindings = std::move(bindings), .pushConstantBytes = sizeof(MarchConstants)};
 }
 
 std::uint32_t layersOf(const std::vector<View>& views) {
@@ -30,12 +36,18 @@ std::uint32_t layersOf(const std::vector<View>& views) {
 
 } // namespace
 
+void registerPartsShaders() {
+  static const bool registered = (gpu::registerShaders(volmark_parts_embedded::shaders), true);
+  static_cast<void>(registered);
+}
+
 Marcher::Marcher(const Preparation& preparation, const MarcherDescription& description, Recorder& recorder)
     : m_scene(&preparation.scene), m_stepLength(static_cast<float>(preparation.parameters.number("step") *
                                                                    m_scene->volume->grid().smallestSpacingMm())),
       m_volume(*preparation.device, preparation.scene, filteringOf(preparation.parameters), recorder, 0,
                preparation.scene.volume->timeSteps()),
       m_counters(*preparation.device, kCounterCount) {
+  registerPartsShaders();
   const Pass pass = recorder.hostPass("pipelines");
   m_timed = makePipeline(*preparation.device, description, false, preparation);
   m_counting = makePipeline(*preparation.device, description, true, preparation);
@@ -53,8 +65,8 @@ gpu::Pipeline Marcher::makePipeline(gpu::Device& device, MarcherDescription desc
                                                   .specialisation = description.variant}};
 }
 
-void Marcher::march(const Frame& frame, std::uint64_t seed, MarchConstants constants, const gpu::Resource& own,
-                    Recorder& recorder) const {
+void Marcher::march(const Frame& frame, std::uint64_t seed, MarchConstants constants,
+                    std::span<const gpu::Resource> own, Recorder& recorder) const {
   assert(frame.target && static_cast<int>(frame.inputs.views.size()) <= gpu::kMaxViews);
   constants.stepLength = m_stepLength;
   constants.layers = layersOf(frame.inputs.views);
@@ -62,13 +74,13 @@ void Marcher::march(const Frame& frame, std::uint64_t seed, MarchConstants const
   const Pass pass = recorder.pass("march");
   gpu::Commands& commands = recorder.gpu();
   if (frame.counting) m_counters.clear(commands);
-  const gpu::Resource resources[] = {commands.constants(gpu::frameConstants(frame, *m_scene, m_volume, seed)),
-                                     m_volume.at(frame.inputs.timeStep),
-                                     gpu::StorageImage{frame.target->color.view()},
-                                     gpu::StorageImage{frame.target->distance.view()},
-                                     m_counters.range(),
-                                     gpu::StorageImage{frame.target->steps.view()},
-                                     own};
+  std::vector<gpu::Resource> resources = {commands.constants(gpu::frameConstants(frame, *m_scene, m_volume, seed)),
+                                          m_volume.at(frame.inputs.timeStep),
+                                          gpu::StorageImage{frame.target->color.view()},
+                                          gpu::StorageImage{frame.target->distance.view()},
+                                          m_counters.range(),
+                                          gpu::StorageImage{frame.target->steps.view()}};
+  resources.insert(resources.end(), own.begin(), own.end());
   const glm::uvec3 groups((frame.target->width + kGroupSize - 1) / kGroupSize,
                           (frame.target->height + kGroupSize - 1) / kGroupSize, frame.inputs.views.size());
   commands.dispatch(frame.counting ? m_counting : m_timed, resources, gpu::bytesOf(constants), groups);
@@ -116,4 +128,4 @@ std::vector<gpu::MemoryItem> memoryAdded(const std::vector<gpu::MemoryItem>& bef
   return added;
 }
 
-} // namespace volmark::ray_march
+} // namespace volmark::parts

@@ -1,11 +1,11 @@
-#include "transfer_table.h"
+#include "parts/transfer_table.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace volmark::ray_march {
+namespace volmark::parts {
 namespace {
 
 TransferFunction band() {
@@ -61,4 +61,4 @@ TEST(TransferTable, TransparentFunctionsShowNothing) {
 }
 
 } // namespace
-} // namespace volmark::ray_march
+} // namespace volmark::parts

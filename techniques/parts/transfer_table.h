@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace volmark::ray_march {
+namespace volmark::parts {
 
 struct TransferTable {
   int width = 0;
@@ -18,6 +18,10 @@ struct TransferTable {
   float visibleHigh = 1;
 };
 
+/// Entry i, of `width`: whether a scalar that is looked up there, or between it and a neighbour, can show. Of a
+/// pre-integrated table that is opacity anywhere up to the neighbours.
+std::vector<bool> visibleEntries(const TransferTable& table);
+
 /// `size` straight colours and opacities of a step of `stepVoxels` voxel lengths; the entry nearest to a
 /// scalar holds for it. `size` >= 2.
 TransferTable postClassifiedTable(const TransferFunction& function, int size, double stepVoxels);
@@ -26,4 +30,4 @@ TransferTable postClassifiedTable(const TransferFunction& function, int size, do
 /// be interpolated linearly. `size` >= 2.
 TransferTable preintegratedTable(const TransferFunction& function, int size, double stepVoxels);
 
-} // namespace volmark::ray_march
+} // namespace volmark::parts

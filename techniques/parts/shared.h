@@ -1,10 +1,10 @@
-// What the host code and the shaders of this family share. Scalar layout.
-#ifndef RAY_MARCH_SHARED_H
-#define RAY_MARCH_SHARED_H
+// What the host code and the shaders of ray marchers share. Scalar layout.
+#ifndef PARTS_SHARED_H
+#define PARTS_SHARED_H
 
 #ifdef __cplusplus
 #include <cstdint>
-namespace volmark::ray_march {
+namespace volmark::parts {
 using uint = std::uint32_t;
 #endif
 
@@ -15,7 +15,7 @@ const int kBindingColor = 2;
 const int kBindingDistance = 3;
 const int kBindingCounters = 4;
 const int kBindingSteps = 5;
-const int kBindingOwn = 6; // surfaces: the image of normals; volumes: the table
+const int kBindingOwn = 6; // and following: the technique's. Surfaces: the image of normals; volumes: the table first
 
 // Specialisation constants.
 const int kIdShaderFiltering = 0;
@@ -23,13 +23,16 @@ const int kIdShadingModel = 1;
 const int kIdJitter = 2;
 const int kIdCounting = 3;
 const int kIdEarlyTermination = 4; // volumes only
+const int kIdOwn = 5;              // and following: the technique's
 
-// Counters, in the order of TechniqueInfo::counters.
+// Counters.
 const int kCounterSamples = 0;
 const int kCounterRays = 1;
 const int kCounterEnded = 2; // hits of a surface, or rays ended by early termination
 const int kCounterGradients = 3;
-const int kCounterCount = 4;
+const int kCounterVisible = 4; // volumes only: samples (slabs) with opacity
+const int kCounterNodes = 5;   // of structures: questions whether a place is empty
+const int kCounterCount = 6;
 
 // Pixels of a workgroup, each way.
 const int kGroupSize = 8;
@@ -48,7 +51,7 @@ struct MarchConstants {
 
 #ifdef __cplusplus
 static_assert(sizeof(MarchConstants) == 32);
-} // namespace volmark::ray_march
+} // namespace volmark::parts
 #endif
 
 #endif

@@ -1,4 +1,4 @@
-#include "session.h"
+#include "parts/testing/session.h"
 
 #include "volmark/gpu/commands.h"
 #include "volmark/module.h"
@@ -10,7 +10,7 @@
 #include <cstring>
 #include <numbers>
 
-namespace volmark::ray_march {
+namespace volmark::parts {
 
 namespace {
 
@@ -206,4 +206,4 @@ bool identical(const Picture& a, const Picture& b) {
          std::memcmp(a.distance.data(), b.distance.data(), a.distance.size() * sizeof(float)) == 0;
 }
 
-} // namespace volmark::ray_march
+} // namespace volmark::parts

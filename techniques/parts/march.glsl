@@ -1,8 +1,8 @@
-// The ray of one invocation and the samples along it, for both techniques of this family.
-#ifndef RAY_MARCH_MARCH_GLSL
-#define RAY_MARCH_MARCH_GLSL
+// The ray of one invocation and the samples along it, for all ray marchers.
+#ifndef PARTS_MARCH_GLSL
+#define PARTS_MARCH_GLSL
 
-#include <ray_march/shared.h>
+#include <parts/shared.h>
 #include <volmark/box.glsl>
 #include <volmark/counters.glsl>
 #include <volmark/frame.glsl>
@@ -33,7 +33,8 @@ layout(push_constant, scalar) uniform MarchBlock {
 // rounding adds up along the ray.
 struct Path {
   Ray ray;
-  float entry;          // ray parameter, world units
+  float entry;          // ray parameter of place 0, world units
+  float first;          // place where the part that is not clipped away begins
   float places;         // of the exit, in steps; not an integer in general
   vec3 entryNormal;
   vec3 base;            // texture coordinates, or voxel coordinates where the shader filters
@@ -48,12 +49,19 @@ float jitterOf(ivec2 pixel) {
   return toUnitFloat(randomBits(frame.seed, index, frame.frameIndex, 0u));
 }
 
-// False if the ray misses the volume or all of it is clipped away.
-bool makePath(VolumeGrid grid, ivec2 pixel, uint view, out Path path) {
+// False if the ray misses the volume or all of it is clipped away. Place 0 is where the ray enters the box if
+// `fromBox`, so that clipping planes move no sample, else where they leave it.
+bool makePath(VolumeGrid grid, ivec2 pixel, uint view, bool fromBox, out Path path) {
   path.ray = rayThroughPixel(frame.views[view], pixel, frame.size);
-  float exit;
-  if (!clipRay(frame, path.ray, path.entry, exit, path.entryNormal)) return false;
-  path.places = (exit - path.entry) / march.stepLength;
+  RayInterval interval = wholeRay(path.ray);
+  cutByBox(path.ray, grid.boxMinimum, grid.boxMaximum, interval);
+  path.entry = interval.entry;
+  cutByClippingPlanes(frame, path.ray, interval);
+  if (interval.entry > interval.exit) return false;
+  if (!fromBox) path.entry = interval.entry;
+  path.entryNormal = interval.normal;
+  path.first = (interval.entry - path.entry) / march.stepLength;
+  path.places = (interval.exit - path.entry) / march.stepLength;
   vec3 unit = kShaderFiltering ? vec3(1) : 1.0 / vec3(grid.dims);
   vec3 toUnit = grid.voxelsPerUnit * unit;
   path.base = (pointOnRay(path.ray, path.entry) - grid.boxMinimum) * toUnit + (kShaderFiltering ? vec3(0) : 0.5 * unit);
@@ -65,7 +73,7 @@ bool makePath(VolumeGrid grid, ivec2 pixel, uint view, out Path path) {
 // The volume's texel value at a place. Neither normalised nor clamped: it is compared with texelOf() a scalar,
 // so that a sample costs nothing but the fetch.
 float texelAt(VolumeGrid grid, Path path, float place) {
-  vec3 position = path.base + place * path.delta;
+  precise vec3 position = path.base + place * path.delta; // the same bits in every shader
   if (!kShaderFiltering) return textureLod(volume, position, 0.0).r;
   vec3 voxel = clamp(position, vec3(0), vec3(grid.dims - 1));
   vec3 corner = floor(voxel);

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace volmark::ray_march {
+namespace volmark::parts {
 
 /// Scalars in [0,1] by position, voxel i of n at (i+0.5)/n along each axis.
 using ScalarField = std::function<double(const glm::dvec3&)>;
@@ -85,4 +85,4 @@ double meanDifference(const Picture& a, const Picture& b);
 /// Bit for bit.
 bool identical(const Picture& a, const Picture& b);
 
-} // namespace volmark::ray_march
+} // namespace volmark::parts

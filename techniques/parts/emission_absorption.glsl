@@ -1,0 +1,183 @@
+// Emission and absorption along a path, front to back, in parts: what every direct volume renderer shares. A technique
+// decides which parts of a ray it visits, and calls accumulate() for them, front to back.
+#ifndef PARTS_EMISSION_ABSORPTION_GLSL
+#define PARTS_EMISSION_ABSORPTION_GLSL
+
+#include <parts/march.glsl>
+#include <volmark/transfer_function.glsl>
+
+layout(constant_id = kIdEarlyTermination) const bool kEarlyTermination = true;
+
+// Colour and opacity of one step (transfer_table.h). The macro PREINTEGRATED changes the table's type.
+#ifdef PREINTEGRATED
+layout(set = 0, binding = kBindingOwn) uniform sampler2D table;
+#else
+layout(set = 0, binding = kBindingOwn) uniform sampler1D table;
+#endif
+
+// Samples (or slabs) between two checks of the loop. Drivers that call functions to sample textures keep what is
+// alive in memory around each call: four at a time share that, and the test for empty space.
+const int kBlock = 4;
+
+struct Accumulation {
+  vec3 color;
+  float transmittance;
+  uint samples;
+  uint visible; // of them, with opacity
+  uint gradients;
+};
+
+bool goesOn(float transmittance) {
+  return !kEarlyTermination || transmittance > march.endTransmittance;
+}
+
+// Adds what a sample at `place` (a slab from there on) contributes, if it is there and the ray has not ended.
+void add(VolumeGrid grid, Path path, vec4 sampled, float place, bool there, inout Accumulation sum) {
+  bool counts = there && goesOn(sum.transmittance);
+  float weight = counts ? sum.transmittance * sampled.a : 0.0;
+  if (kCounting && counts) {
+    ++sum.samples;
+    if (sampled.a > 0.0) ++sum.visible;
+  }
+  vec3 color = sampled.rgb;
+  if (kShadingModel != kShadingNone && weight > 0.0) {
+    color = shadeOnPath(path, color, normalAt(grid, path, place));
+    if (kCounting) ++sum.gradients;
+  }
+  sum.color += weight * color;
+  sum.transmittance -= weight;
+}
+
+// What the transfer function says of texel values.
+struct Classification {
+  float scale;        // to table coordinates
+  float bias;
+  float visibleLow;   // texels at or below are transparent
+  float visibleHigh;  // and those at or above
+};
+
+Classification classification(VolumeGrid grid) {
+  return Classification(march.tableScale * grid.valueScale, march.tableScale * grid.valueBias + march.tableBias,
+                        texelOf(grid, march.visibleLow), texelOf(grid, march.visibleHigh));
+}
+
+// True if there may be opacity between the lowest and the highest of some texel values.
+bool visible(Classification by, float lowest, float highest) {
+  return highest > by.visibleLow && lowest < by.visibleHigh;
+}
+
+// Sample i lies at place shift + i. The first one that is not clipped away, and the end of those before the exit; slab i
+// goes from sample i to the next.
+int firstSample(Path path) {
+  return int(ceil(path.first - path.shift));
+}
+int sampleEnd(Path path) {
+  return int(ceil(path.places - path.shift));
+}
+
+#ifndef PREINTEGRATED
+
+// Straight colour and opacity of a sample. The sampler clamps.
+vec4 classify(Classification by, float texel) {
+  return textureLod(table, by.scale * texel + by.bias, 0.0);
+}
+
+// What lies before the first sample: nothing.
+void accumulateBeginning(VolumeGrid grid, Path path, Classification by, inout Accumulation sum) {}
+
+// Samples first <= i < end.
+void accumulate(VolumeGrid grid, Path path, Classification by, int first, int end, inout Accumulation sum) {
+  for (int i = first; i < end && goesOn(sum.transmittance); i += kBlock) {
+    float place = path.shift + float(i);
+    float a = texelAt(grid, path, place);
+    float b = texelAt(grid, path, place + 1.0);
+    float c = texelAt(grid, path, place + 2.0);
+    float d = texelAt(grid, path, place + 3.0);
+    if (visible(by, min(min(a, b), min(c, d)), max(max(a, b), max(c, d)))) {
+      vec4 sampleA = classify(by, a);
+      vec4 sampleB = classify(by, b);
+      vec4 sampleC = classify(by, c);
+      vec4 sampleD = classify(by, d);
+      add(grid, path, sampleA, place, true, sum);
+      add(grid, path, sampleB, place + 1.0, i + 1 < end, sum);
+      add(grid, path, sampleC, place + 2.0, i + 2 < end, sum);
+      add(grid, path, sampleD, place + 3.0, i + 3 < end, sum);
+    } else if (kCounting) {
+      sum.samples += uint(min(kBlock, end - i));
+    }
+  }
+}
+
+#else
+
+// Straight colour and opacity of a slab; colours are interpolated premultiplied.
+vec4 classify(Classification by, float front, float back) {
+  vec4 slab = textureLod(table, by.scale * vec2(front, back) + by.bias, 0.0);
+  return vec4(slab.rgb / max(slab.a, 1e-30), slab.a);
+}
+
+// A slab of which only `share` of the length is there. Straight colours keep when the opacity changes. Below the
+// largest float under 1 the power is defined.
+vec4 cutSlab(vec4 slab, float share) {
+  return vec4(slab.rgb, opacityOfStep(min(slab.a, 0.99999994), share));
+}
+
+// The part of a slab before the first sample, where a clipping plane or the jitter cuts it.
+void accumulateBeginning(VolumeGrid grid, Path path, Classification by, inout Accumulation sum) {
+  float place = min(path.shift + float(firstSample(path)), path.places);
+  float share = place - path.first;
+  if (share <= 0.0) return;
+  float front = texelAt(grid, path, path.first);
+  float back = texelAt(grid, path, place);
+  if (kCounting) ++sum.samples;
+  add(grid, path, cutSlab(classify(by, front, back), share), path.first, true, sum);
+}
+
+// Slabs first <= i < end (Engel, Kraus, Ertl 2001), the last one of the ray up to the exit. The sample at the back of one
+// slab is the front of the next.
+void accumulate(VolumeGrid grid, Path path, Classification by, int first, int end, inout Accumulation sum) {
+  if (first >= end || !goesOn(sum.transmittance)) return;
+  float front = texelAt(grid, path, path.shift + float(first));
+  if (kCounting) ++sum.samples;
+  for (int i = first; i < end && goesOn(sum.transmittance); i += kBlock) {
+    float place = path.shift + float(i);
+    float a = texelAt(grid, path, min(place + 1.0, path.places));
+    float b = texelAt(grid, path, min(place + 2.0, path.places));
+    float c = texelAt(grid, path, min(place + 3.0, path.places));
+    float d = texelAt(grid, path, min(place + 4.0, path.places));
+    if (visible(by, min(min(min(a, b), min(c, d)), front), max(max(max(a, b), max(c, d)), front))) {
+      vec4 slabA = classify(by, front, a);
+      vec4 slabB = classify(by, a, b);
+      vec4 slabC = classify(by, b, c);
+      vec4 slabD = classify(by, c, d);
+      float rest = path.places - place;
+      if (rest < float(kBlock)) {
+        slabA = cutSlab(slabA, clamp(rest, 0.0, 1.0));
+        slabB = cutSlab(slabB, clamp(rest - 1.0, 0.0, 1.0));
+        slabC = cutSlab(slabC, clamp(rest - 2.0, 0.0, 1.0));
+        slabD = cutSlab(slabD, clamp(rest - 3.0, 0.0, 1.0));
+      }
+      add(grid, path, slabA, place, true, sum);
+      add(grid, path, slabB, place + 1.0, i + 1 < end, sum);
+      add(grid, path, slabC, place + 2.0, i + 2 < end, sum);
+      add(grid, path, slabD, place + 3.0, i + 3 < end, sum);
+    } else if (kCounting) {
+      sum.samples += uint(min(kBlock, end - i));
+    }
+    front = d;
+  }
+}
+
+#endif
+
+// Writes and counts what has been gathered; every invocation of the workgroup calls it. `nodes`: questions asked of a
+// structure, which count as steps of the ray.
+void finishRay(ivec2 pixel, uint view, bool inPicture, bool entered, Accumulation sum, uint nodes) {
+  if (inPicture)
+    writePixel(pixel, view, vec4(sum.color, 1.0 - sum.transmittance), infinity(), sum.samples + nodes);
+  countRay(sum.samples, entered, entered && !goesOn(sum.transmittance), sum.gradients);
+  if (kCounting) addToCounterBySubgroup(kCounterVisible, sum.visible);
+  if (kCounting) addToCounterBySubgroup(kCounterNodes, nodes);
+}
+
+#endif
