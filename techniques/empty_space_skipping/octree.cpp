@@ -1,0 +1,172 @@
+#include "octree.h"
+
+#include "volmark/gpu/volume_texture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+namespace volmark::empty_space_skipping {
+
+namespace {
+
+/// "r32ui" and so on: the layout qualifier of a format.
+const char* qualifierOf(VkFormat format) {
+  switch (format) {
+  case VK_FORMAT_R8_UINT: return "r8ui";
+  case VK_FORMAT_R16_UINT: return "r16ui";
+  case VK_FORMAT_R32_UINT: return "r32ui";
+  case VK_FORMAT_R32G32_UINT: return "rg32ui";
+  case VK_FORMAT_R32G32B32A32_UINT: return "rgba32ui";
+  case VK_FORMAT_R8G8_UNORM: return "rg8";
+  case VK_FORMAT_R16G16_UNORM: return "rg16";
+  default: return "rg32f";
+  }
+}
+
+std::uint64_t bytesOf(VkFormat format) {
+  switch (format) {
+  case VK_FORMAT_R8_UINT: return 1;
+  case VK_FORMAT_R16_UINT:
+  case VK_FORMAT_R8G8_UNORM: return 2;
+  case VK_FORMAT_R32_UINT:
+  case VK_FORMAT_R16G16_UNORM: return 4;
+  case VK_FORMAT_R32G32_UINT:
+  case VK_FORMAT_R32G32_SFLOAT: return 8;
+  default: return 16;
+  }
+}
+
+int rootLevelOf(const glm::ivec3& blocks) {
+  const int most = std::max({blocks.x, blocks.y, blocks.z});
+  return static_cast<int>(std::bit_width(static_cast<unsigned>(most - 1)));
+}
+
+/// Levels next to the root hold something visible in any picture worth drawing (section 4.3).
+constexpr int kLevelsSkippedByDefault = 3;
+
+gpu::Pipeline builder(gpu::Device& device, const char* file, const StructureSettings& settings, VkFormat format,
+                      std::vector<VkDescriptorType> bindings, bool cooperative) {
+  return {device, gpu::ComputePipelineDescription{
+                      .name = file,
+                      .shader = {.path = std::string("empty_space_skipping/") + file,
+                                 .macros = {{macroOf(settings.kind), "1"}, {"NODE_FORMAT", qualifierOf(format)}}},
+                      .layout = {.bindings = std::move(bindings), .pushConstantBytes = sizeof(BuildConstants)},
+                      .specialisation = gpu::Specialisation().set(kIdCooperative, cooperative)}};
+}
+
+} // namespace
+
+OctreeShape octreeShape(const StructureSettings& settings, const Grid& grid) {
+  OctreeShape shape;
+  shape.blocks = blocksOf(cellsOf(grid, settings.voxelBlocks), settings.blockEdge);
+  shape.rootLevel = rootLevelOf(shape.blocks);
+  const int skipped = settings.skippedLevels.value_or(std::min(kLevelsSkippedByDefault, shape.rootLevel));
+  assert(skipped >= 0 && skipped <= shape.rootLevel);
+  shape.initialLevel = shape.rootLevel - skipped;
+  const int node = 1 << shape.initialLevel;
+  shape.leaves = (shape.blocks + node - 1) / node * node;
+  return shape;
+}
+
+VkFormat nodeFormat(const StructureSettings& settings, ScalarType type) {
+  switch (settings.kind) {
+  case StructureKind::minMaxOctree:
+    switch (type) {
+    case ScalarType::int8:
+    case ScalarType::uint8: return VK_FORMAT_R8G8_UNORM;
+    case ScalarType::int16:
+    case ScalarType::uint16: return VK_FORMAT_R16G16_UNORM;
+    case ScalarType::float32: return VK_FORMAT_R32G32_SFLOAT;
+    }
+    break;
+  case StructureKind::bitfieldOctree:
+    switch (settings.bits) {
+    case 8: return VK_FORMAT_R8_UINT;
+    case 16: return VK_FORMAT_R16_UINT;
+    case 32: return VK_FORMAT_R32_UINT;
+    case 64: return VK_FORMAT_R32G32_UINT;
+    default: return VK_FORMAT_R32G32B32A32_UINT;
+    }
+  default: break;
+  }
+  return VK_FORMAT_R8_UINT;
+}
+
+std::optional<std::string> whyOctreeUnsupported(const StructureSettings& settings, const Volume& volume,
+                                                const gpu::Device& device) {
+  const int rootLevel = rootLevelOf(blocksOf(cellsOf(volume.grid(), settings.voxelBlocks), settings.blockEdge));
+  if (settings.skippedLevels && *settings.skippedLevels > rootLevel)
+    return fmt::format(
+        "initial_level: found {}, allowed: at most {}, the level of the leaves of this octree (leaf {}).",
+        *settings.skippedLevels, rootLevel, settings.blockEdge);
+  const OctreeShape shape = octreeShape(settings, volume.grid());
+  const std::uint64_t leafBytes = bytesOf(nodeFormat(settings, volume.type()));
+  const std::uint64_t bytes = leafBytes * static_cast<std::uint64_t>(shape.leaves.x) * shape.leaves.y * shape.leaves.z;
+  const std::uint64_t most = device.facts().maximumAllocationBytes;
+  if (bytes > most)
+    return fmt::format("The octree's leaves ({} x {} x {} of {} bytes) need {} bytes, the device allows {} at once.",
+                       shape.leaves.x, shape.leaves.y, shape.leaves.z, leafBytes, bytes, most);
+  return std::nullopt;
+}
+
+Octree::Octree(gpu::Device& device, const Scene& scene, const gpu::VolumeTexture& volume,
+               const StructureSettings& settings)
+    : m_settings(settings), m_shape(octreeShape(settings, scene.volume->grid())),
+      m_constants(buildConstants(scene, volume, settings)) {
+  const VkFormat format = nodeFormat(settings, scene.volume->type());
+  m_nodes = gpu::Image(
+      device, {.name = "octree",
+               .type = VK_IMAGE_TYPE_3D,
+               .format = format,
+               .extent = {static_cast<std::uint32_t>(m_shape.leaves.x), static_cast<std::uint32_t>(m_shape.leaves.y),
+                          static_cast<std::uint32_t>(m_shape.leaves.z)},
+               .mipLevels = static_cast<std::uint32_t>(m_shape.initialLevel) + 1,
+               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+  m_sampler = gpu::Sampler(device, VK_FILTER_NEAREST);
+  std::vector<VkDescriptorType> bindings = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                            VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
+  m_parents = builder(device, "octree_parents.comp.glsl", settings, format, bindings, false);
+  if (dependsOnTransferFunction()) bindings.push_back(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+  m_leaves = builder(device, "octree_leaves.comp.glsl", settings, format, bindings, isCooperative(settings.blockEdge));
+}
+
+void Octree::build(gpu::Commands& commands, const gpu::SampledImage& volume, const VisibleScalars& visible) {
+  // Earlier frames may still be reading.
+  commands.transition(m_nodes, m_built ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL,
+                      gpu::kComputeRead, gpu::kComputeWrite);
+  m_built = true;
+  BuildConstants constants = m_constants;
+  constants.nodes = m_shape.leaves;
+  constants.tableEntries = visible.entries();
+  std::vector<gpu::Resource> leaves = {volume, gpu::StorageImage{m_nodes.levelView(0)}};
+  if (dependsOnTransferFunction()) leaves.emplace_back(visibleBuffer(commands, visible));
+  commands.dispatch(m_leaves, leaves, gpu::bytesOf(constants),
+                    buildGroups(m_shape.leaves, isCooperative(m_settings.blockEdge)));
+  for (int level = 1; level <= m_shape.initialLevel; ++level) {
+    commands.barrier(gpu::kComputeWrite, gpu::kComputeReadWrite);
+    constants.nodes = m_shape.leaves >> level;
+    const auto index = static_cast<std::uint32_t>(level);
+    const gpu::Resource nodes[] = {
+        gpu::SampledImage{m_nodes.levelView(index - 1), m_sampler.handle(), VK_IMAGE_LAYOUT_GENERAL},
+        gpu::StorageImage{m_nodes.levelView(index)}};
+    commands.dispatch(m_parents, nodes, gpu::bytesOf(constants), buildGroups(constants.nodes, false));
+  }
+  commands.barrier(gpu::kComputeWrite, gpu::kComputeRead);
+}
+
+gpu::SampledImage Octree::image() const {
+  return {m_nodes.view(), m_sampler.handle(), VK_IMAGE_LAYOUT_GENERAL};
+}
+
+SkippingConstants Octree::constants(const VisibleScalars& visible) const {
+  SkippingConstants constants{};
+  if (m_settings.kind == StructureKind::bitfieldOctree) constants.mask = visible.mask(m_settings.bits);
+  constants.blockShift = std::countr_zero(static_cast<unsigned>(m_settings.blockEdge));
+  constants.initialLevel = m_shape.initialLevel;
+  return constants;
+}
+
+} // namespace volmark::empty_space_skipping

@@ -1,0 +1,49 @@
+// Whether nodes of an octree are empty, and the way through its levels (Faludi et al. 2021, section 3.4).
+#ifndef EMPTY_SPACE_SKIPPING_OCTREE_GLSL
+#define EMPTY_SPACE_SKIPPING_OCTREE_GLSL
+
+#include <empty_space_skipping/walk.glsl>
+
+layout(constant_id = kIdBidirectional) const bool kBidirectional = true;
+
+#ifdef MINMAX
+layout(set = 0, binding = kBindingStructure) uniform sampler3D octree;
+#else
+layout(set = 0, binding = kBindingStructure) uniform usampler3D octree;
+#endif
+
+bool isEmpty(Classification by, ivec3 node, int level) {
+#if defined(MINMAX)
+  vec2 range = texelFetch(octree, node, level).xy;
+  return !visible(by, range.x, range.y);
+#elif defined(BITFIELD)
+  // Components that the format has not are 0 (the last one 1), and so is the mask there.
+  return (texelFetch(octree, node, level) & skipping.mask) == uvec4(0);
+#else
+  return texelFetch(octree, node, level).x == 0u;
+#endif
+}
+
+// Finds the largest empty node at or below the level of the search that holds sample `index`, or the leaf. True if it
+// is empty. `last`: all samples up to it are in the node.
+//
+// Top-down, every search starts at the initial level. Bidirectional, it resumes at the level of the last one, and after
+// an empty node one level higher.
+bool findEmpty(Classification by, inout Walk walk, int index, out int last) {
+  ivec3 leaf = cellAt(walk, index) >> skipping.blockShift;
+  int level = kBidirectional ? walk.level : skipping.initialLevel;
+  bool empty = isEmpty(by, leaf >> level, level);
+  ++walk.nodes;
+  while (!empty && level > 0) {
+    --level;
+    empty = isEmpty(by, leaf >> level, level);
+    ++walk.nodes;
+  }
+  walk.level = empty ? min(level + 1, skipping.initialLevel) : level;
+  int shift = skipping.blockShift + level;
+  ivec3 low = (leaf >> level) << shift;
+  last = lastInside(walk, low, low + (1 << shift) - 1, index);
+  return empty;
+}
+
+#endif

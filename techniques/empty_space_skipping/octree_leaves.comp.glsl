@@ -1,0 +1,81 @@
+// Leaves of an octree, from the voxels of their blocks (Faludi et al. 2021, section 3.3).
+// Macros: NODE_FORMAT, the image's format; BITFIELD, MINMAX or BOOLEAN.
+// One invocation (one workgroup, if cooperative) is one leaf. octree_parents.comp.glsl runs next.
+#version 460
+
+#include <empty_space_skipping/block.glsl>
+#ifdef BOOLEAN
+#include <empty_space_skipping/visible.glsl>
+#endif
+
+#ifdef MINMAX
+layout(set = 0, binding = kBindingNodes, NODE_FORMAT) uniform writeonly image3D nodes;
+#else
+layout(set = 0, binding = kBindingNodes, NODE_FORMAT) uniform writeonly uimage3D nodes;
+#endif
+
+// Bits 0 to count - 1, of a count that may lie beyond the word.
+uint lowBits(int count) {
+  return count <= 0 ? 0u : count >= 32 ? 0xffffffffu : (1u << uint(count)) - 1u;
+}
+
+#ifdef BITFIELD
+shared uint bitsOfGroup[4];
+
+// The bins of a block's voxels (section 3.1).
+uvec4 binsOfVoxels(ivec3 block) {
+  ivec3 low, high;
+  voxelsOf(block, low, high);
+  if (kCooperative && gl_LocalInvocationIndex < 4u) bitsOfGroup[gl_LocalInvocationIndex] = 0u;
+  barrier();
+  uvec4 bits = uvec4(0);
+  ivec3 first = low + firstVoxel();
+  int stride = voxelStride();
+  for (int z = first.z; z <= high.z; z += stride)
+    for (int y = first.y; y <= high.y; y += stride)
+      for (int x = first.x; x <= high.x; x += stride) {
+        int bin = binOf(scalarOf(texelFetch(volume, ivec3(x, y, z), 0).r));
+        bits[bin >> 5] |= 1u << uint(bin & 31);
+      }
+  if (kCooperative) {
+    for (int word = 0; word < 4; ++word)
+      if (bits[word] != 0u) atomicOr(bitsOfGroup[word], bits[word]);
+    barrier();
+    bits = uvec4(bitsOfGroup[0], bitsOfGroup[1], bitsOfGroup[2], bitsOfGroup[3]);
+  }
+  return bits;
+}
+
+// Every bin that a trilinear value in the block can lie in. A cell's are those from its lowest to its highest corner;
+// neighbouring cells share corners, so that a block's are all from its lowest to its highest voxel.
+uvec4 binsOfCells(ivec3 block) {
+  vec2 range = rangeOf(block);
+  int low = binOf(scalarOf(range.x));
+  int high = binOf(scalarOf(range.y));
+  uvec4 bits;
+  for (int word = 0; word < 4; ++word)
+    bits[word] = lowBits(high + 1 - 32 * word) & ~lowBits(low - 32 * word);
+  return bits;
+}
+#endif
+
+void main() {
+  ivec3 node = blockOfInvocation();
+  bool isBlock = all(lessThan(node, build.blocks));
+  bool writes = all(lessThan(node, build.nodes)) && (!kCooperative || gl_LocalInvocationIndex == 0u);
+#if defined(BITFIELD)
+  uvec4 bits = build.voxelBlocks != 0 ? binsOfVoxels(node) : binsOfCells(node);
+  if (writes) imageStore(nodes, node, isBlock ? bits : uvec4(0));
+#elif defined(MINMAX)
+  vec2 range = rangeOf(node);
+  // Neutral to its parent: nothing lies between.
+  vec2 nothing = build.rawScale > 0.0 ? vec2(1, 0) : vec2(3.402823466e38, -3.402823466e38);
+  if (writes) imageStore(nodes, node, vec4(isBlock ? range : nothing, 0, 0));
+#else
+  vec2 range = rangeOf(node);
+  if (writes) {
+    bool shows = isBlock && showsBetween(scalarOf(range.x), scalarOf(range.y), build.tableEntries);
+    imageStore(nodes, node, uvec4(shows ? 1u : 0u));
+  }
+#endif
+}

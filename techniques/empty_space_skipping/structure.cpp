@@ -1,0 +1,78 @@
+#include "structure.h"
+
+#include "distance_map.h"
+#include "octree.h"
+
+#include <bit>
+
+namespace volmark::empty_space_skipping {
+
+std::unique_ptr<Structure> makeStructure(gpu::Device& device, const Scene& scene, const gpu::VolumeTexture& volume,
+                                         const StructureSettings& settings) {
+  if (settings.kind == StructureKind::distanceMap || settings.kind == StructureKind::chebyshevMap)
+    return std::make_unique<DistanceMap>(device, scene, volume, settings);
+  return std::make_unique<Octree>(device, scene, volume, settings);
+}
+
+std::optional<std::string> whyStructureUnsupported(const StructureSettings& settings, const Volume& volume,
+                                                   const gpu::Device& device) {
+  if (settings.kind == StructureKind::distanceMap || settings.kind == StructureKind::chebyshevMap)
+    return whyDistanceMapUnsupported(settings, volume, device);
+  return whyOctreeUnsupported(settings, volume, device);
+}
+
+const char* macroOf(StructureKind kind) {
+  switch (kind) {
+  case StructureKind::bitfieldOctree: return "BITFIELD";
+  case StructureKind::minMaxOctree: return "MINMAX";
+  case StructureKind::booleanOctree: return "BOOLEAN";
+  case StructureKind::distanceMap: return "EUCLIDEAN";
+  case StructureKind::chebyshevMap: return "CHEBYSHEV";
+  }
+  return "";
+}
+
+glm::ivec3 cellsOf(const Grid& grid, bool voxelBlocks) {
+  return voxelBlocks ? grid.dims : glm::max(grid.dims - 1, glm::ivec3(1));
+}
+
+glm::ivec3 blocksOf(const glm::ivec3& cells, int blockEdge) {
+  return (cells + blockEdge - 1) / blockEdge;
+}
+
+BuildConstants buildConstants(const Scene& scene, const gpu::VolumeTexture& volume, const StructureSettings& settings) {
+  const Grid& grid = scene.volume->grid();
+  // Integers are sampled as UNORM, 1.0 being the type's largest.
+  double largest = 0;
+  switch (scene.volume->type()) {
+  case ScalarType::int8:
+  case ScalarType::uint8: largest = 255; break;
+  case ScalarType::int16:
+  case ScalarType::uint16: largest = 65535; break;
+  case ScalarType::float32: break;
+  }
+  BuildConstants constants{};
+  constants.dims = grid.dims;
+  constants.blockEdge = settings.blockEdge;
+  constants.blocks = blocksOf(cellsOf(grid, settings.voxelBlocks), settings.blockEdge);
+  constants.rawScale = static_cast<float>(largest);
+  constants.scalarScale = largest > 0 ? static_cast<float>(volume.scale() / largest) : volume.scale();
+  constants.scalarBias = volume.bias();
+  constants.bits = settings.bits;
+  constants.voxelBlocks = settings.voxelBlocks ? 1 : 0;
+  return constants;
+}
+
+bool isCooperative(int blockEdge) {
+  return blockEdge >= 16;
+}
+
+glm::uvec3 buildGroups(const glm::ivec3& blocks, bool cooperative) {
+  return cooperative ? glm::uvec3(blocks) : glm::uvec3((blocks + kBuildGroup - 1) / kBuildGroup);
+}
+
+gpu::BufferRange visibleBuffer(gpu::Commands& commands, const VisibleScalars& visible) {
+  return commands.constants(std::as_bytes(std::span(visible.before())));
+}
+
+} // namespace volmark::empty_space_skipping
