@@ -9,6 +9,7 @@
 
 layout(set = 0, binding = kBindingStructure) uniform usampler3D distances;
 
+// True if sample `index` is transparent, and all up to `last`; if not, those up to `last` are in the same texel.
 bool findEmpty(Classification by, inout Walk walk, int index, out int last) {
   int shift = skipping.blockShift;
   ivec3 texel = cellAt(walk, index) >> shift;

@@ -14,7 +14,7 @@ layout(constant_id = kIdSharedSlabs) const bool kSharedSlabs = true;
 
 // Samples of occupied nodes are gathered until there are so many, or until an empty node follows: the texture units, and
 // the lanes of a subgroup, then have work for several turns.
-const int kRun = 16;
+const int kRun = 32;
 
 // Adds what the samples [first, end) show. `drawn`: the end of the slabs that have been drawn.
 void drawRun(VolumeGrid grid, Path path, Classification by, Walk walk, int first, int end, inout int drawn,
@@ -56,8 +56,16 @@ void skipAndDraw(VolumeGrid grid, Path path, Classification by, inout Walk walk,
   }
 }
 
+// Pixels of a workgroup in Z order: the invocations of a subgroup are a compact block of the picture, whose rays take
+// about as many turns.
+ivec2 pixelInZOrder() {
+  uint n = gl_LocalInvocationIndex;
+  ivec2 within = ivec2((n & 1u) | ((n >> 1) & 2u) | ((n >> 2) & 4u), ((n >> 1) & 1u) | ((n >> 2) & 2u) | ((n >> 3) & 4u));
+  return ivec2(gl_WorkGroupID.xy) * kGroupSize + within;
+}
+
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = pixelInZOrder();
   uint view = gl_WorkGroupID.z;
   VolumeGrid grid = volumeGrid(frame);
   Accumulation sum = Accumulation(vec3(0), 1.0, 0u, 0u, 0u);

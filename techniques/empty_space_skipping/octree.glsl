@@ -39,7 +39,7 @@ bool findEmpty(Classification by, inout Walk walk, int index, out int last) {
     empty = isEmpty(by, leaf >> level, level);
     ++walk.nodes;
   }
-  walk.level = empty ? min(level + 1, skipping.initialLevel) : level;
+  walk.level = min(level + (empty ? 1 : 0), skipping.initialLevel);
   int shift = skipping.blockShift + level;
   ivec3 low = (leaf >> level) << shift;
   last = lastInside(walk, low, low + (1 << shift) - 1, index);

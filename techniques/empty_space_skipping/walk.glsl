@@ -21,7 +21,7 @@ struct Walk {
   float shift;
   float places;
   int end;        // of the indices
-  int level;      // octrees: where the next question starts
+  int level;      // octrees: where the next search starts
   uint nodes;     // questions asked
 };
 
@@ -59,14 +59,10 @@ int lastInside(Walk walk, ivec3 low, ivec3 high, int index) {
   vec3 sides = mix(vec3(low), vec3(high + 1), bvec3(walk.ahead));
   vec3 exits = (sides - walk.base) * walk.inverse;
   float exit = min(min(exits.x, exits.y), min(exits.z, walk.places + 1.0));
-  int last = clamp(int(floor(exit - walk.shift)), index, walk.end - 1);
-  ivec3 cell = cellAt(walk, last);
-  if (any(lessThan(cell, low)) || any(greaterThan(cell, high))) {
-    last = max(last - 1, index);
-    cell = cellAt(walk, last);
-    if (any(lessThan(cell, low)) || any(greaterThan(cell, high))) last = index;
-  }
-  return last;
+  // A little less than the exit, so that the check seldom fails.
+  int last = clamp(int(floor(exit - walk.shift - 1e-3)), index, walk.end - 1);
+  bvec3 outside = greaterThan(uvec3(cellAt(walk, last) - low), uvec3(high - low));
+  return any(outside) ? index : last;
 }
 
 #endif
