@@ -13,6 +13,7 @@ from .errors import InputError
 from .gate import command as gate
 from .grid import command as grid
 from .load import load_experiment
+from .papers import command as papers
 from .points import point_results
 from .search import command as search
 
@@ -26,6 +27,7 @@ _EPILOG = """examples:
   python3 -m volmark_analysis export results/quick --format github-action-benchmark -o benchmark.json
   python3 -m volmark_analysis bench new.json --old old.json
   python3 -m volmark_analysis gate --base origin/main
+  python3 -m volmark_analysis paper bitfield_octree_2021 --table1 results/bitfield_octree_2021_table1 -o results/paper
 
 DIR is an experiment folder: the one with experiment.json and runs/. Unusable input gives one line and exit code 2.
 The statistics are defined in harness/README.md, section 6, and at the end of every report."""
@@ -87,6 +89,7 @@ def _parser() -> argparse.ArgumentParser:
     gate.add_command(commands)
     grid.add_command(commands)
     search.add_commands(commands)
+    papers.add_command(commands)
     return parser
 
 

@@ -1,0 +1,1 @@
+"""Papers whose tables and figures are reproduced: published numbers beside measured ones."""
