@@ -1,6 +1,7 @@
-// One axis of a distance transform. Macros: EUCLIDEAN or CHEBYSHEV; LAST for the axis after which rays read the result. The minimum over all occupied texels splits into one minimum an axis:
+// One axis of a distance transform. The minimum over all occupied texels splits into one minimum an axis:
 // EUCLIDEAN: of the squared distances of boxes, per axis max(|d| - 1, 0) squared, added up;
 // CHEBYSHEV: of the number of texels to go, one way along each axis, the largest counts.
+// Macros: EUCLIDEAN or CHEBYSHEV; LAST for the axis after which rays read the result.
 // One invocation is one texel. It runs for x, y and z, with a barrier in between; then rays read the result.
 #version 460
 
