@@ -2,9 +2,6 @@
 
 #include "parts/volume_marcher.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <optional>
 
 namespace volmark::empty_space_skipping {
@@ -30,14 +27,6 @@ StructureSettings settingsOf(Kind kind, const ParameterValues& parameters) {
   if (isOctree(kind) && parameters.integer("initial_level") >= 0)
     settings.skippedLevels = static_cast<int>(parameters.integer("initial_level"));
   return settings;
-}
-
-/// Whether neighbouring samples lie in the same block or in blocks that touch: then the values between two transparent
-/// blocks are all in them, too.
-bool stepsStayBetweenNeighbours(const Scene& scene, double stepVoxels, int blockEdge) {
-  return stepVoxels * scene.volume->grid().smallestSpacingMm() <=
-         blockEdge * std::min({scene.volume->grid().spacingMm.x, scene.volume->grid().spacingMm.y,
-                               scene.volume->grid().spacingMm.z});
 }
 
 class SkippingTechnique final : public Technique {
@@ -75,8 +64,9 @@ void SkippingTechnique::prepare(const Preparation& preparation, Recorder& record
       .own = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
   description.variant.set(kIdBidirectional, isOctree(m_kind) && parameters.text("traversal") == "bidirectional")
       .set(kIdVoxelBlocks, settings.voxelBlocks)
-      .set(kIdSharedSlabs,
-           stepsStayBetweenNeighbours(preparation.scene, parameters.number("step"), settings.blockEdge));
+      // A step is in voxels of the smallest spacing: it is as long at most along any axis, so that samples next to each
+      // other lie in one block or in two that touch.
+      .set(kIdSharedSlabs, parameters.number("step") <= settings.blockEdge);
   m_marcher.emplace(preparation, description, recorder);
   {
     const Pass pass = recorder.hostPass("structure_pipelines");

@@ -3,8 +3,6 @@
 #include "distance_map.h"
 #include "octree.h"
 
-#include <bit>
-
 namespace volmark::empty_space_skipping {
 
 std::unique_ptr<Structure> makeStructure(gpu::Device& device, const Scene& scene, const gpu::VolumeTexture& volume,

@@ -4,7 +4,6 @@
 #include "parts/marcher.h"
 #include "random_scenes.h"
 #include "volmark/gpu/buffer.h"
-#include "volmark/host_recorder.h"
 #include "volmark/module.h"
 
 #include <fmt/format.h>
@@ -18,21 +17,6 @@
 
 namespace volmark::empty_space_skipping {
 namespace {
-
-/// Records without timing anything.
-class PlainRecorder final : public Recorder {
-public:
-  explicit PlainRecorder(gpu::Commands& commands) : m_commands(commands) {}
-  gpu::Commands& gpu() override { return m_commands; }
-
-protected:
-  int beginGpuPass(std::string_view) override { return 0; }
-  int beginHostPass(std::string_view) override { return 0; }
-  void endPass(int) noexcept override {}
-
-private:
-  gpu::Commands& m_commands;
-};
 
 /// A volume on the GPU and a structure built from it.
 class Built {
@@ -79,7 +63,7 @@ public:
 
 private:
   gpu::Commands m_commands;
-  PlainRecorder m_recorder;
+  parts::PlainRecorder m_recorder;
   std::optional<gpu::VolumeTexture> m_texture;
 };
 

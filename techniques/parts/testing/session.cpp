@@ -14,21 +14,6 @@ namespace volmark::parts {
 
 namespace {
 
-/// Records without timing anything.
-class PlainRecorder final : public Recorder {
-public:
-  explicit PlainRecorder(gpu::Commands& commands) : m_commands(commands) {}
-  gpu::Commands& gpu() override { return m_commands; }
-
-protected:
-  int beginGpuPass(std::string_view) override { return 0; }
-  int beginHostPass(std::string_view) override { return 0; }
-  void endPass(int) noexcept override {}
-
-private:
-  gpu::Commands& m_commands;
-};
-
 template <class Voxel> void append(std::vector<std::byte>& bytes, double unit) {
   Voxel voxel;
   if constexpr (std::is_floating_point_v<Voxel>) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "volmark/gpu/target.h"
+#include "volmark/recorder.h"
 #include "volmark/technique.h"
 
 #include <functional>
@@ -30,6 +31,21 @@ View lookAtBox(const Grid& grid, double azimuth, double elevation, int width, in
 /// One view, a smooth transfer function with a transparent beginning.
 FrameInputs makeInputs(const View& view, double isovalue = 0.5, double topOpacity = 0.1);
 std::shared_ptr<const TransferFunction> ramp(double topOpacity);
+
+/// Records without timing anything.
+class PlainRecorder final : public Recorder {
+public:
+  explicit PlainRecorder(gpu::Commands& commands) : m_commands(commands) {}
+  gpu::Commands& gpu() override { return m_commands; }
+
+protected:
+  int beginGpuPass(std::string_view) override { return 0; }
+  int beginHostPass(std::string_view) override { return 0; }
+  void endPass(int) noexcept override {}
+
+private:
+  gpu::Commands& m_commands;
+};
 
 /// The one device of the tests, with validation.
 gpu::Device& device();

@@ -20,7 +20,7 @@ struct ImageDescription {
 };
 
 /// Move-only owner of an optimal-tiling image with a view of everything (2-D images: as an array of all
-/// layers), a view of each layer and, with several mip levels, a view of each level. Starts in
+/// layers), a view of each layer and a view of each mip level. Starts in
 /// VK_IMAGE_LAYOUT_UNDEFINED. Throws UnsupportedError when the extent, the format or the memory is beyond the device.
 class Image {
 public:
