@@ -24,7 +24,6 @@ void fillInputs(const FrameInputs& inputs, FrameConstants& constants) {
   constants.viewCount = static_cast<uint>(inputs.views.size());
   constants.clippingPlaneCount = static_cast<uint>(inputs.clippingPlanes.size());
   constants.isovalue = static_cast<float>(inputs.isovalue);
-  constants.lightDirection = vec3(glm::normalize(inputs.light.direction));
   constants.lightColor = vec3(inputs.light.color);
   constants.ambient = static_cast<float>(inputs.light.ambient);
   constants.headlight = inputs.light.headlight ? 1 : 0;
@@ -41,6 +40,10 @@ void fillScene(const Scene& scene, FrameConstants& constants) {
   constants.surfaceColor = vec3(scene.shading.surfaceColor);
 }
 
+vec4 placeOf(const Light& light, const Grid& grid) {
+  return light.isSpot() ? vec4(vec3(light.position(grid)), 1) : vec4(vec3(glm::normalize(light.direction)), 0);
+}
+
 ivec2 sizeOf(const Frame& frame) {
   if (frame.target) return {frame.target->width, frame.target->height};
   assert(frame.pictures && !frame.pictures->empty());
@@ -54,6 +57,7 @@ FrameConstants frameConstants(const Frame& frame, const Scene& scene, const Volu
   FrameConstants constants{};
   fillInputs(frame.inputs, constants);
   fillScene(scene, constants);
+  constants.light = placeOf(frame.inputs.light, scene.volume->grid());
   constants.size = sizeOf(frame);
   constants.valueScale = texture.scale();
   constants.valueBias = texture.bias();

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace volmark::reference {
@@ -17,11 +18,43 @@ namespace {
 /// What all rays of a picture share.
 struct Emission {
   const Scene& scene;
-  const Light& light;
+  const FrameInputs& inputs;
   const Field& field;
-  const Medium& medium;
-  double voxelMm; // the length that opacity refers to
+  const Medium& medium; // of what clipping planes keep
+  const Medium* beyond; // of what they cut off; null: nothing
+  double voxelMm;       // the length that opacity refers to
 };
+
+/// A part of a path, and what it leads through.
+struct Portion {
+  Path path;
+  const Medium& medium;
+};
+
+/// The path cut into what is drawn, in order. `inBox` is not cut by the clipping planes.
+std::vector<Portion> portionsOf(const Emission& emission, const std::optional<Path>& kept,
+                                const std::optional<Path>& inBox) {
+  std::vector<Portion> portions;
+  if (!emission.beyond) {
+    if (kept) portions.push_back({*kept, emission.medium});
+    return portions;
+  }
+  if (!inBox) return portions;
+  const auto part = [&](double entry, double exit, const Medium& medium) {
+    Path path = *inBox;
+    path.entry = entry;
+    path.exit = exit;
+    portions.push_back({path, medium});
+  };
+  if (!kept) {
+    part(inBox->entry, inBox->exit, *emission.beyond);
+    return portions;
+  }
+  if (inBox->entry < kept->entry) part(inBox->entry, kept->entry, *emission.beyond);
+  part(kept->entry, kept->exit, emission.medium);
+  if (kept->exit < inBox->exit) part(kept->exit, inBox->exit, *emission.beyond);
+  return portions;
+}
 
 /// Light gathered from the front to the back.
 struct Gathered {
@@ -35,12 +68,16 @@ struct Gathered {
   glm::dvec4 result() const { return glm::dvec4(color, 1 - transmittance); }
 };
 
+double shareThatArrives(const Emission& emission, const glm::dvec3& place);
+
 /// How samples at `t` respond to the light.
 Response responseAt(const Emission& emission, const Path& path, double t) {
   const ShadingModel model = emission.scene.shading.model;
   if (model == ShadingModel::none) return {};
-  const glm::dvec3 gradient = emission.field.gradient(emission.field.toVoxel(path.at(t)));
-  return respondToGradient(model, emission.light, gradient, -path.direction);
+  const glm::dvec3 place = path.at(t);
+  Arriving light = arrivingAt(place, emission.inputs.light, emission.scene.volume->grid(), -path.direction);
+  if (emission.scene.shading.shadows) light.color *= shareThatArrives(emission, place);
+  return respondToGradient(model, light, emission.field.gradient(emission.field.toVoxel(place)), -path.direction);
 }
 
 /// Lights a premultiplied colour.
@@ -56,19 +93,18 @@ bool stopsEarly(const VolumeSamples& samples, const Gathered& gathered) {
   return samples.earlyTermination && 1 - gathered.transmittance >= samples.terminationOpacity;
 }
 
-glm::dvec4 alongPoints(const Emission& emission, const Path& path, const VolumeSamples& samples) {
+void alongPoints(const Emission& emission, const Portion& portion, const VolumeSamples& samples, Gathered& gathered) {
+  const Path& path = portion.path;
   const double step = samples.stepVoxels * emission.voxelMm;
-  Gathered gathered;
   const auto place = [&](long i) { return path.boxEntry + double(i) * step; };
   const long first = static_cast<long>(std::ceil((path.entry - path.boxEntry) / step));
   for (long i = first; place(i) < path.exit && !stopsEarly(samples, gathered); ++i) {
     const double t = place(i);
-    const glm::dvec4 sample = emission.medium.evaluate(valueAt(emission, path, t));
+    const glm::dvec4 sample = portion.medium.evaluate(valueAt(emission, path, t));
     if (sample.a <= 0) continue;
     const double opacity = 1 - std::pow(1 - sample.a, samples.stepVoxels);
     gathered.add(lit(responseAt(emission, path, t), glm::dvec4(glm::dvec3(sample) * opacity, opacity)));
   }
-  return gathered.result();
 }
 
 /// A whole step's slab, shortened to a share of the step.
@@ -78,17 +114,17 @@ glm::dvec4 shortened(const glm::dvec4& slab, double share) {
   return glm::dvec4(glm::dvec3(slab) * (opacity / slab.a), opacity);
 }
 
-glm::dvec4 alongSlabs(const Emission& emission, const Path& path, const VolumeSamples& samples) {
+void alongSlabs(const Emission& emission, const Portion& portion, const VolumeSamples& samples, Gathered& gathered) {
+  const Path& path = portion.path;
   const double step = samples.stepVoxels * emission.voxelMm;
-  Gathered gathered;
-  if (path.entry == path.exit) return gathered.result();
+  if (path.entry == path.exit) return;
   double front = valueAt(emission, path, path.entry);
   double start = path.entry;
   const long whole = static_cast<long>(std::floor((path.entry - path.boxEntry) / step));
   for (long i = whole + 1; start < path.exit && !stopsEarly(samples, gathered); ++i) {
     const double end = std::min(path.boxEntry + double(i) * step, path.exit);
     const double back = valueAt(emission, path, end);
-    glm::dvec4 slab = emission.medium.slab(front, back, samples.stepVoxels);
+    glm::dvec4 slab = portion.medium.slab(front, back, samples.stepVoxels);
     const double share = std::min((end - start) / step, 1.0);
     if (slab.a > 0) {
       if (start == path.entry || end == path.exit) slab = shortened(slab, share);
@@ -97,7 +133,6 @@ glm::dvec4 alongSlabs(const Emission& emission, const Path& path, const VolumeSa
     front = back;
     start = end;
   }
-  return gathered.result();
 }
 
 /// Cuts [0,1] where the scalar turns and where the transfer function bends: in between, colour and opacity are smooth
@@ -118,7 +153,7 @@ void cutAtBends(const Cubic& cubic, const std::vector<double>& bends, std::vecto
 }
 
 /// The part of a path in one cell, each piece between cuts as `count` slabs of equal length, lit at their middles.
-glm::dvec4 cellAsSlabs(const Emission& emission, const Path& path, const CellSpan& span, const Cubic& cubic,
+glm::dvec4 cellAsSlabs(const Emission& emission, const Portion& portion, const CellSpan& span, const Cubic& cubic,
                        const std::vector<double>& cuts, int count) {
   const double length = span.end - span.start;
   Gathered gathered;
@@ -128,11 +163,11 @@ glm::dvec4 cellAsSlabs(const Emission& emission, const Path& path, const CellSpa
     const double share = (end - start) / count;
     for (int i = 0; i < count; ++i) {
       const double back = cubic(i + 1 < count ? start + (i + 1) * share : end);
-      const glm::dvec4 slab = emission.medium.slab(front, back, share * length / emission.voxelMm);
+      const glm::dvec4 slab = portion.medium.slab(front, back, share * length / emission.voxelMm);
       front = back;
       if (slab.a <= 0) continue;
       const double middle = span.start + (start + (i + 0.5) * share) * length;
-      gathered.add(lit(responseAt(emission, path, middle), slab));
+      gathered.add(lit(responseAt(emission, portion.path, middle), slab));
     }
     start = end;
   }
@@ -144,44 +179,81 @@ double largestDifference(const glm::dvec4& a, const glm::dvec4& b) {
   return std::max({difference.r, difference.g, difference.b, difference.a});
 }
 
-glm::dvec4 converged(const Emission& emission, const Path& path, double tolerance) {
+void converged(const Emission& emission, const Portion& portion, double tolerance, Gathered& gathered) {
+  const Path& path = portion.path;
   // At 64 slabs only a jump of the shading can be left, and it is worth less than 1/64 of the cell.
   constexpr int kFewestSlabs = 2;
   constexpr int kMostSlabs = 64;
   // What lies behind can't change the ray by more than a small part of the tolerance.
   const double opaque = 0.01 * tolerance;
 
-  Gathered gathered;
   CellWalk walk(emission.field, path);
   CellSpan span;
   std::vector<double> cuts;
   while (gathered.transmittance > opaque && walk.next(span)) {
     if (span.end <= span.start) continue;
     const Cubic cubic = cubicAlong(emission.field.corners(span.cell), span.from, span.to);
-    if (emission.medium.isTransparent(cubic.lowerBound(), cubic.upperBound())) continue;
-    cutAtBends(cubic, emission.medium.bends(), cuts);
+    if (portion.medium.isTransparent(cubic.lowerBound(), cubic.upperBound())) continue;
+    cutAtBends(cubic, portion.medium.bends(), cuts);
 
     // Halve the slabs until the cell changes by less than its share of the ray's tolerance.
     const double allowed = tolerance * (span.end - span.start) / (path.exit - path.entry);
-    glm::dvec4 cell = cellAsSlabs(emission, path, span, cubic, cuts, kFewestSlabs);
+    glm::dvec4 cell = cellAsSlabs(emission, portion, span, cubic, cuts, kFewestSlabs);
     for (int count = 2 * kFewestSlabs; count <= kMostSlabs; count *= 2) {
-      const glm::dvec4 finer = cellAsSlabs(emission, path, span, cubic, cuts, count);
+      const glm::dvec4 finer = cellAsSlabs(emission, portion, span, cubic, cuts, count);
       const double change = gathered.transmittance * largestDifference(finer, cell);
       cell = finer;
       if (change <= allowed) break;
     }
     gathered.add(cell);
   }
-  return gathered.result();
 }
 
-glm::dvec4 integrate(const Emission& emission, const Path& path, const VolumeSamples& samples) {
-  switch (samples.form) {
-  case VolumeSamples::Form::point: return alongPoints(emission, path, samples);
-  case VolumeSamples::Form::preintegrated: return alongSlabs(emission, path, samples);
-  case VolumeSamples::Form::converged: return converged(emission, path, samples.tolerance);
+/// Opacity is in closed form where the scalar is taken as linear: two slabs between bends follow the cubic.
+double transmittanceOf(const Emission& emission, const Portion& portion) {
+  constexpr int kSlabs = 2;
+  double transmittance = 1;
+  CellWalk walk(emission.field, portion.path);
+  CellSpan span;
+  std::vector<double> cuts;
+  while (transmittance > 1e-6 && walk.next(span)) {
+    if (span.end <= span.start) continue;
+    const Cubic cubic = cubicAlong(emission.field.corners(span.cell), span.from, span.to);
+    if (portion.medium.isTransparent(cubic.lowerBound(), cubic.upperBound())) continue;
+    cutAtBends(cubic, portion.medium.bends(), cuts);
+    double start = 0;
+    for (const double end : cuts) {
+      const double share = (end - start) / kSlabs;
+      const double voxels = share * (span.end - span.start) / emission.voxelMm;
+      for (int i = 0; i < kSlabs; ++i)
+        transmittance *= 1 - portion.medium.slab(cubic(start + i * share), cubic(start + (i + 1) * share), voxels).a;
+      start = end;
+    }
   }
-  return glm::dvec4(0);
+  return transmittance;
+}
+
+/// Of the spotlight's light, at a place.
+double shareThatArrives(const Emission& emission, const glm::dvec3& place) {
+  const Grid& grid = emission.scene.volume->grid();
+  const glm::dvec3 light = emission.inputs.light.position(grid);
+  const auto kept = pathBetween(grid, emission.inputs.clippingPlanes, light, place);
+  double share = 1;
+  for (const Portion& portion : portionsOf(emission, kept, pathBetween(grid, {}, light, place)))
+    share *= transmittanceOf(emission, portion);
+  return share;
+}
+
+glm::dvec4 integrate(const Emission& emission, const std::vector<Portion>& portions, const VolumeSamples& samples) {
+  Gathered gathered;
+  for (const Portion& portion : portions) {
+    switch (samples.form) {
+    case VolumeSamples::Form::point: alongPoints(emission, portion, samples, gathered); break;
+    case VolumeSamples::Form::preintegrated: alongSlabs(emission, portion, samples, gathered); break;
+    case VolumeSamples::Form::converged: converged(emission, portion, samples.tolerance, gathered); break;
+    }
+  }
+  return gathered.result();
 }
 
 } // namespace
@@ -194,13 +266,16 @@ Picture renderVolume(const Scene& scene, const FrameInputs& inputs, int view, in
   const Field field(scene, inputs.timeStep);
   const Medium medium(*inputs.transferFunction);
   const double voxelMm = std::min({grid.spacingMm.x, grid.spacingMm.y, grid.spacingMm.z});
-  const Emission emission{scene, inputs.light, field, medium, voxelMm};
+  std::optional<Medium> beyond;
+  if (scene.functionBeyond) beyond.emplace(*scene.functionBeyond);
+  const Emission emission{scene, inputs, field, medium, beyond ? &*beyond : nullptr, voxelMm};
   Picture picture(width, height);
   forEachScanline(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
-      const auto path = pathThroughPixel(grid, inputs.clippingPlanes, inputs.views[static_cast<std::size_t>(view)], x,
-                                         y, width, height);
-      if (path) picture.color[picture.index(x, y)] = glm::vec4(integrate(emission, *path, samples));
+      const View& eye = inputs.views[static_cast<std::size_t>(view)];
+      const auto kept = pathThroughPixel(grid, inputs.clippingPlanes, eye, x, y, width, height);
+      const auto portions = portionsOf(emission, kept, pathThroughPixel(grid, {}, eye, x, y, width, height));
+      if (!portions.empty()) picture.color[picture.index(x, y)] = glm::vec4(integrate(emission, portions, samples));
     }
   });
   return picture;

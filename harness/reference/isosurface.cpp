@@ -34,9 +34,11 @@ std::optional<Hit> firstHit(const Field& field, const Path& path, double isovalu
 
 glm::dvec3 litSurface(const Scene& scene, const Light& light, const Field& field, const Path& path, const Hit& hit) {
   const ShadingModel model = scene.shading.model;
+  const glm::dvec3 place = path.at(hit.t);
+  const Arriving arriving = arrivingAt(place, light, scene.volume->grid(), -path.direction);
   const Response response =
-      hit.atEntry ? respond(model, light, path.entryNormal, -path.direction)
-                  : respondToGradient(model, light, field.gradient(field.toVoxel(path.at(hit.t))), -path.direction);
+      hit.atEntry ? respond(model, arriving, path.entryNormal, -path.direction)
+                  : respondToGradient(model, arriving, field.gradient(field.toVoxel(place)), -path.direction);
   return response.lit(scene.shading.surfaceColor);
 }
 

@@ -22,7 +22,30 @@ bool keepHalfSpace(const glm::dvec3& normal, double offset, Path& path) {
   return path.entry <= path.exit;
 }
 
+/// Cuts a path to the box, then to the planes. False if nothing is left. The box is six half spaces; a side's offset is
+/// minus half the extent.
+bool cut(const Grid& grid, std::span<const ClippingPlane> planes, Path& path) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double halfExtent = 0.5 * (grid.dims[axis] - 1) * grid.spacingMm[axis];
+    glm::dvec3 side(0);
+    side[axis] = 1;
+    if (!keepHalfSpace(side, -halfExtent, path) || !keepHalfSpace(-side, -halfExtent, path)) return false;
+  }
+  path.boxEntry = path.entry;
+  return std::all_of(planes.begin(), planes.end(),
+                     [&](const ClippingPlane& plane) { return keepHalfSpace(plane.normal, plane.offset, path); });
+}
+
 } // namespace
+
+std::optional<Path> pathBetween(const Grid& grid, std::span<const ClippingPlane> planes, const glm::dvec3& from,
+                                const glm::dvec3& to) {
+  const double length = glm::distance(from, to);
+  const glm::dvec3 direction = (to - from) / length;
+  Path path{.origin = from, .direction = direction, .cosine = 1, .entry = 0, .exit = length, .entryNormal = -direction};
+  if (!cut(grid, planes, path)) return std::nullopt;
+  return path;
+}
 
 std::optional<Path> pathThroughPixel(const Grid& grid, std::span<const ClippingPlane> planes, const View& view, int x,
                                      int y, int width, int height) {
@@ -41,16 +64,7 @@ std::optional<Path> pathThroughPixel(const Grid& grid, std::span<const ClippingP
   path.exit = std::numeric_limits<double>::infinity();
   path.entryNormal = -path.direction;
 
-  // The box is six half spaces; a side's offset is minus half the extent.
-  for (int axis = 0; axis < 3; ++axis) {
-    const double halfExtent = 0.5 * (grid.dims[axis] - 1) * grid.spacingMm[axis];
-    glm::dvec3 side(0);
-    side[axis] = 1;
-    if (!keepHalfSpace(side, -halfExtent, path) || !keepHalfSpace(-side, -halfExtent, path)) return std::nullopt;
-  }
-  path.boxEntry = path.entry;
-  for (const ClippingPlane& plane : planes)
-    if (!keepHalfSpace(plane.normal, plane.offset, path)) return std::nullopt;
+  if (!cut(grid, planes, path)) return std::nullopt;
   return path;
 }
 

@@ -21,6 +21,10 @@ struct Path {
   glm::dvec3 at(double t) const { return origin + t * direction; }
 };
 
+/// The ray from one point to another one. Nothing if it meets nothing of the volume.
+std::optional<Path> pathBetween(const Grid& grid, std::span<const ClippingPlane> planes, const glm::dvec3& from,
+                                const glm::dvec3& to);
+
 /// The ray through the centre of pixel (x, y) of a width*height picture, y down. Nothing if it misses.
 std::optional<Path> pathThroughPixel(const Grid& grid, std::span<const ClippingPlane> planes, const View& view, int x,
                                      int y, int width, int height);

@@ -29,6 +29,8 @@ struct VolumeSamples {
   double tolerance = 1e-4; ///< converged
 };
 
+/// With scene.shading.shadows, a sample is lit by what the volume lets through on the straight way from the spotlight,
+/// clipping planes included. With scene.functionBeyond, what clipping planes cut off has that transfer function.
 /// Emission-absorption with opacity per voxel length (TransferFunction); premultiplied colours, `distance` stays
 /// infinite. Samples are shaded with scene.shading.model: at the sample, at a slab's front sample, or, converged,
 /// everywhere. Converged rays are cut at cell boundaries, at the scalar's extrema and where it meets a control point;

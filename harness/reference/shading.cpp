@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSmallestGradient = 1e-6;
 
-glm::dvec3 highlight(const Light& light, const glm::dvec3& n, const glm::dvec3& l, const glm::dvec3& v) {
+glm::dvec3 highlight(const Arriving& light, const glm::dvec3& n, const glm::dvec3& l, const glm::dvec3& v) {
   const glm::dvec3 sum = l + v;
   const double length = glm::length(sum);
   if (glm::dot(n, l) <= 0 || length == 0) return glm::dvec3(0);
@@ -21,7 +21,7 @@ double toTheFifth(double x) {
 }
 
 /// Burley's diffuse term and a GGX lobe; the lobe's 1/pi is left out, as the light is given in units of pi.
-Response respondAsGgx(const Light& light, const glm::dvec3& n, const glm::dvec3& l, const glm::dvec3& v) {
+Response respondAsGgx(const Arriving& light, const glm::dvec3& n, const glm::dvec3& l, const glm::dvec3& v) {
   constexpr double kRoughness = 0.5;
   constexpr double kFacing = 0.04; // Fresnel reflectance at normal incidence
   const double nl = glm::dot(n, l);
@@ -45,9 +45,15 @@ Response respondAsGgx(const Light& light, const glm::dvec3& n, const glm::dvec3&
 
 } // namespace
 
-Response respond(ShadingModel model, const Light& light, const glm::dvec3& normal, const glm::dvec3& toEye) {
+Arriving arrivingAt(const glm::dvec3& place, const Light& light, const Grid& grid, const glm::dvec3& toEye) {
+  if (light.headlight) return {toEye, light.color, light.ambient};
+  if (!light.spot) return {light.direction, light.color, light.ambient};
+  return {glm::normalize(light.position(grid) - place), light.color, light.ambient};
+}
+
+Response respond(ShadingModel model, const Arriving& light, const glm::dvec3& normal, const glm::dvec3& toEye) {
   const glm::dvec3 n = glm::dot(normal, toEye) < 0 ? -normal : normal;
-  const glm::dvec3 l = light.headlight ? toEye : light.direction;
+  const glm::dvec3& l = light.from;
   const double cosine = glm::dot(n, l);
   const glm::dvec3 lambert = light.ambient + (1 - light.ambient) * light.color * std::max(cosine, 0.0);
   switch (model) {
@@ -64,7 +70,7 @@ Response respond(ShadingModel model, const Light& light, const glm::dvec3& norma
   return {};
 }
 
-Response respondToGradient(ShadingModel model, const Light& light, const glm::dvec3& gradient,
+Response respondToGradient(ShadingModel model, const Arriving& light, const glm::dvec3& gradient,
                            const glm::dvec3& toEye) {
   const double length = glm::length(gradient);
   if (length < kSmallestGradient) return {};

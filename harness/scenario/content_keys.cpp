@@ -184,6 +184,29 @@ PointKey isovalue() {
   return derived(std::move(key), kFirstOfScene);
 }
 
+bool bySpot(const PointSettings& s) {
+  return s.light.isSpot();
+}
+
+PointKey functionBeyond() {
+  nlohmann::json schema = transferFunctionSchema();
+  schema["anyOf"].push_back({{"type", "null"}});
+  PointKey key = plain(
+      "transfer_function_beyond", "",
+      "Draws what clipping planes cut off: control points, or a name of the scene's; null: it is not drawn.", schema,
+      [](const JsonValue& value, PointSettings& s) {
+        if (value.json().is_null())
+          s.functionBeyond.reset();
+        else
+          s.functionBeyond = resolveTransferFunction(value, s.scene);
+      },
+      [](const PointSettings& s) { return s.functionBeyond ? toJson(*s.functionBeyond) : nlohmann::json(); });
+  key.check = [](const JsonValue& value) {
+    if (!value.json().is_null()) checkTransferFunction(value);
+  };
+  return onlyIf([](const PointSettings& s) { return !s.timeline.clippingPlanes.empty(); }, std::move(key));
+}
+
 PointKey transferFunction() {
   PointKey key = plain(
       "transfer_function", "", "Control points, or the name of one of the scene's.", transferFunctionSchema(),
@@ -215,6 +238,7 @@ std::vector<PointKey> contentKeys() {
   result.push_back(techniqueParameters());
   result.push_back(isovalue());
   result.push_back(transferFunction());
+  result.push_back(functionBeyond());
   result.push_back(derived(choice(
                                "shading.model", [](auto& s) -> auto& { return s.shading.model; },
                                std::vector<std::pair<std::string, ShadingModel>>{{"none", ShadingModel::none},
@@ -227,6 +251,9 @@ std::vector<PointKey> contentKeys() {
   result.push_back(vector(
       "shading.surface_color", [](auto& s) -> auto& { return s.shading.surfaceColor; }, 0, 1,
       "Colour of isosurfaces, linear Rec.709."));
+  result.push_back(onlyIf(bySpot, boolean(
+                                      "shading.shadows", [](auto& s) -> auto& { return s.shading.shadows; },
+                                      "The volume keeps the spotlight's light from itself.")));
   result.push_back(derived(
       boolean(
           "light.headlight", [](auto& s) -> auto& { return s.light.headlight; }, "The light comes from the eye."),
@@ -236,6 +263,16 @@ std::vector<PointKey> contentKeys() {
                                       "light.direction", [](auto& s) -> auto& { return s.light.direction; },
                                       "Towards the light, in the volume's axes."),
                                   kOfScene)));
+  result.push_back(onlyIf([](const PointSettings& s) { return !s.light.headlight; },
+                          derived(boolean(
+                                      "light.spot", [](auto& s) -> auto& { return s.light.spot; },
+                                      "A spotlight on the whole volume instead of a light infinitely far away."),
+                                  kOfScene)));
+  result.push_back(
+      onlyIf(bySpot, derived(number(
+                                 "light.distance", [](auto& s) -> auto& { return s.light.distance; }, 1.1, 100,
+                                 "radius", "From the volume's centre to the spotlight; its bounding sphere is 1."),
+                             kOfScene)));
   result.push_back(derived(vector(
                                "light.color", [](auto& s) -> auto& { return s.light.color; }, 0, 100,
                                "Colour of the light, linear Rec.709."),

@@ -90,6 +90,7 @@ struct PointSettings {
   /// Absent for techniques that draw volumes alone, unless it was given.
   std::optional<Isovalue> isovalue;
   std::shared_ptr<const TransferFunction> transferFunction; ///< resolved; never null
+  std::shared_ptr<const TransferFunction> functionBeyond;   ///< of what clipping planes cut off; null: not drawn
   Shading shading;
   Light light;
   int width = 512;

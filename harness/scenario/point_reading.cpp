@@ -102,9 +102,18 @@ void checkTechnique(const Given& given, const TechniqueInfo& technique, const Po
   if (settings.stereo.enabled && technique.maximumViews < 2)
     given.fail("stereo.enabled",
                fmt::format("found 2 views, technique \"{}\" draws at most {}", technique.name, technique.maximumViews));
+  if (settings.shading.shadows && !technique.shadows)
+    given.fail("shading.shadows", fmt::format("found true, technique \"{}\" draws no shadows", technique.name));
+  if (settings.functionBeyond && !technique.functionBeyond)
+    given.fail(
+        "transfer_function_beyond",
+        fmt::format("technique \"{}\" does not draw what clipping planes cut off; allowed: null", technique.name));
 }
 
 void checkCombination(const Given& given, const PointSettings& settings) {
+  if (settings.shading.shadows && !settings.light.isSpot())
+    given.fail("shading.shadows",
+               "found true, but only a spotlight casts shadows: \"light.spot\" true, \"light.headlight\" false");
   const CameraPath& camera = settings.timeline.camera;
   if (camera.kind == CameraPath::Kind::keys && camera.keys.empty())
     given.fail("timeline.keys", "path \"keys\" needs at least one key pose");

@@ -243,6 +243,8 @@ Light parseLight(const JsonValue& value) {
   // Who gives a direction and nothing else means it.
   light.headlight = !direction;
   if (const auto headlight = object.find("headlight")) light.headlight = headlight->boolean();
+  if (const auto spot = object.find("spot")) light.spot = spot->boolean();
+  if (const auto distance = object.find("distance")) light.distance = distance->number(1.1, 100);
   if (const auto color = object.find("color")) light.color = vectorOf(*color, 0, 100);
   if (const auto ambient = object.find("ambient")) light.ambient = ambient->number(0, 1);
   object.refuseOthers();

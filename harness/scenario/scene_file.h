@@ -76,7 +76,7 @@ SceneDescription readScene(const std::filesystem::path& path);
 Isovalue parseIsovalue(const JsonValue& value);
 /// Parses {"points": [{"value","color","opacity"}...]}. Throws InputError.
 TransferFunction parseTransferFunction(const std::string& name, const JsonValue& value);
-/// Parses {"headlight","direction","color","ambient"}; headlight defaults to true unless there is a
+/// Parses {"headlight","direction","spot","distance","color","ambient"}; headlight defaults to true unless there is a
 /// direction. Throws InputError.
 Light parseLight(const JsonValue& value);
 

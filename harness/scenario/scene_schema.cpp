@@ -125,6 +125,8 @@ json sceneSchema() {
        {"framing", object({{"up", schemaOf("framing.up")}, {"front", schemaOf("framing.front")}}, {"up", "front"})},
        {"light", object({{"headlight", schemaOf("light.headlight")},
                          {"direction", schemaOf("light.direction")},
+                         {"spot", schemaOf("light.spot")},
+                         {"distance", schemaOf("light.distance")},
                          {"color", schemaOf("light.color")},
                          {"ambient", schemaOf("light.ambient")}},
                         {})}},

@@ -179,6 +179,7 @@ Scene makeScene(const PointSettings& settings, std::shared_ptr<const Volume> vol
                     "has to be given",
                     settings.scene.name, scene.visualisationRange.minimum));
   scene.shading = settings.shading;
+  if (!settings.timeline.clippingPlanes.empty()) scene.functionBeyond = settings.functionBeyond;
   scene.volume = std::move(volume);
   return scene;
 }

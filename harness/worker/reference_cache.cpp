@@ -27,6 +27,11 @@ public:
     m_text += fmt::format("{:a} ", value);
     return *this;
   }
+  ContentKey& add(const TransferFunction& function) {
+    for (const ControlPoint& point : function.points())
+      add(point.value).add(point.color).add(point.opacity);
+    return add(std::string("end"));
+  }
   ContentKey& add(const std::string& text) {
     m_text += text + " ";
     return *this;
@@ -52,12 +57,12 @@ std::string keyOf(const Scene& scene, const FrameInputs& inputs, int width, int 
   for (const ClippingPlane& plane : inputs.clippingPlanes)
     key.add(plane.normal).add(plane.offset);
   key.add(inputs.timeStep).add(inputs.light.headlight ? 1 : 0).add(inputs.light.direction).add(inputs.light.color);
-  key.add(inputs.light.ambient);
+  key.add(inputs.light.ambient).add(inputs.light.isSpot() ? inputs.light.distance : 0);
   if (draws == Draws::isosurface) {
     key.add(inputs.isovalue).add(scene.shading.surfaceColor);
   } else {
-    for (const ControlPoint& point : inputs.transferFunction->points())
-      key.add(point.value).add(point.color).add(point.opacity);
+    key.add(scene.shading.shadows ? 1 : 0).add(*inputs.transferFunction);
+    if (scene.functionBeyond) key.add(*scene.functionBeyond);
   }
   return key.digest();
 }

@@ -146,7 +146,7 @@ gpu::SampledImage DistanceMap::image() const {
   return {m_distances.view(), m_sampler.handle(), VK_IMAGE_LAYOUT_GENERAL};
 }
 
-SkippingConstants DistanceMap::constants(const VisibleScalars&) const {
+SkippingConstants DistanceMap::constants(const VisibleScalars&, const VisibleScalars&) const {
   return {.blockShift = std::countr_zero(static_cast<unsigned>(m_settings.blockEdge))};
 }
 

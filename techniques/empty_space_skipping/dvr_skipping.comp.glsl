@@ -68,17 +68,16 @@ void main() {
   ivec2 pixel = pixelInZOrder();
   uint view = gl_WorkGroupID.z;
   VolumeGrid grid = volumeGrid(frame);
-  Accumulation sum = Accumulation(vec3(0), 1.0, 0u, 0u, 0u);
-  bool inPicture = all(lessThan(pixel, frame.size));
+  Accumulation sum = nothingYet();
   uint nodes = 0u;
   Path path;
-  bool entered = inPicture && makePath(grid, pixel, view, true, path);
-  if (entered) {
-    Classification by = classification(grid);
+  bool entered = beginRay(grid, pixel, view, path);
+  for (int n = 0; entered && n < kPortions; ++n) {
+    Classification by = beginPortion(grid, n, path);
     accumulateBeginning(grid, path, by, sum);
     Walk walk = makeWalk(grid, path);
     skipAndDraw(grid, path, by, walk, sum);
-    nodes = walk.nodes;
+    nodes += walk.nodes;
   }
-  finishRay(pixel, view, inPicture, entered, sum, nodes);
+  finishRay(pixel, view, entered, sum, nodes);
 }

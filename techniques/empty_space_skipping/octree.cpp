@@ -161,9 +161,12 @@ gpu::SampledImage Octree::image() const {
   return {m_nodes.view(), m_sampler.handle(), VK_IMAGE_LAYOUT_GENERAL};
 }
 
-SkippingConstants Octree::constants(const VisibleScalars& visible) const {
+SkippingConstants Octree::constants(const VisibleScalars& kept, const VisibleScalars& beyond) const {
   SkippingConstants constants{};
-  if (m_settings.kind == StructureKind::bitfieldOctree) constants.mask = visible.mask(m_settings.bits);
+  if (m_settings.kind == StructureKind::bitfieldOctree) {
+    constants.mask = kept.mask(m_settings.bits);
+    constants.maskBeyond = beyond.mask(m_settings.bits);
+  }
   constants.blockShift = std::countr_zero(static_cast<unsigned>(m_settings.blockEdge));
   constants.initialLevel = m_shape.initialLevel;
   return constants;

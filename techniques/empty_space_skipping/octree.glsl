@@ -18,7 +18,8 @@ bool isEmpty(Classification by, ivec3 node, int level) {
   return !visible(by, range.x, range.y);
 #elif defined(BITFIELD)
   // Components that the format has not are 0 (the last one 1), and so is the mask there.
-  return (texelFetch(octree, node, level) & skipping.mask) == uvec4(0);
+  uvec4 mask = by.beyond ? skipping.maskBeyond : skipping.mask;
+  return (texelFetch(octree, node, level) & mask) == uvec4(0);
 #else
   return texelFetch(octree, node, level).x == 0u;
 #endif

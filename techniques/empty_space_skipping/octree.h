@@ -32,7 +32,7 @@ public:
   bool dependsOnTransferFunction() const override { return m_settings.kind == StructureKind::booleanOctree; }
   void build(gpu::Commands& commands, const gpu::SampledImage& volume, const VisibleScalars& visible) override;
   gpu::SampledImage image() const override;
-  SkippingConstants constants(const VisibleScalars& visible) const override;
+  SkippingConstants constants(const VisibleScalars& kept, const VisibleScalars& beyond) const override;
 
   const OctreeShape& shape() const { return m_shape; }
   const gpu::Image& nodes() const { return m_nodes; }

@@ -23,6 +23,7 @@ const int kIdSharedSlabs = kIdOwn + 2; // pre-integration: a slab between two em
 
 struct SkippingConstants {
   uvec4 mask;       // bitfield octree: bins that the transfer function shows
+  uvec4 maskBeyond; // the same of what clipping planes cut off
   int blockShift;   // log2 of the voxels along a leaf's (texel's) edge
   int initialLevel; // octrees: highest level asked; 0 are the leaves
 };
@@ -62,7 +63,7 @@ struct DistanceConstants {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(SkippingConstants) == 24);
+static_assert(sizeof(SkippingConstants) == 40);
 static_assert(sizeof(BuildConstants) == 64);
 static_assert(sizeof(DistanceConstants) == 32);
 } // namespace volmark::empty_space_skipping

@@ -46,7 +46,7 @@ private:
   Kind m_kind;
   std::optional<parts::VolumeMarcher> m_marcher;
   std::unique_ptr<Structure> m_structure;
-  VisibleScalars m_visible;
+  VisibleScalars m_visible; ///< on either side of the clipping planes
   SkippingConstants m_constants{};
   std::optional<int> m_builtStep; ///< time step that the structure stands for
   std::uint64_t m_seed = 0;
@@ -86,8 +86,11 @@ void SkippingTechnique::update(const Changes& changes, const FrameInputs& inputs
   m_marcher->update(changes, inputs, recorder);
   if (changes.transferFunction) {
     const Pass pass = recorder.hostPass("build_mask");
-    m_visible = VisibleScalars(m_marcher->table());
-    m_constants = m_structure->constants(m_visible);
+    const VisibleScalars kept(m_marcher->table());
+    const parts::TransferTable* other = m_marcher->tableBeyond();
+    const VisibleScalars beyond = other ? VisibleScalars(*other) : kept;
+    m_visible = other ? kept.either(beyond) : kept;
+    m_constants = m_structure->constants(kept, beyond);
   }
   const bool outdated = changes.transferFunction && m_structure->dependsOnTransferFunction();
   if (outdated || m_builtStep != inputs.timeStep) build(inputs.timeStep, recorder);
@@ -102,6 +105,7 @@ std::vector<CounterValue> SkippingTechnique::counters() const {
   const std::vector<std::uint64_t> counts = m_marcher->counts();
   std::vector<CounterValue> values = parts::emissionCounterValues(counts);
   values.push_back({"node_tests", counts[parts::kCounterNodes]});
+  values.push_back({"shadow_node_tests", counts[parts::kCounterShadowNodes]});
   return values;
 }
 
@@ -154,6 +158,7 @@ TechniqueInfo describe(Kind kind, const char* name, const char* summary, const c
   std::vector<CounterDescriptor> counters = parts::emissionCounters();
   counters.push_back({"node_tests", CounterKind::perDevice,
                       isOctree(kind) ? "Nodes of the octree that rays asked." : "Texels of the map that rays asked."});
+  counters.push_back({"shadow_node_tests", CounterKind::perDevice, "The same of rays of the light."});
   return {.name = name,
           .summary = summary,
           .paper = "Faludi, Zentai, Zelechowski, Zam, Rauter, Griessen, Cattin: Transfer-Function-Independent "
@@ -162,6 +167,8 @@ TechniqueInfo describe(Kind kind, const char* name, const char* summary, const c
           .draws = Draws::volume,
           .maximumViews = gpu::kMaxViews,
           .shadings = parts::emissionShadings(),
+          .shadows = true,
+          .functionBeyond = true,
           .parameters = parametersOf(kind),
           .passes = passesOf(kind),
           .generation = generationOf(kind),

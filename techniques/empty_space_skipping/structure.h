@@ -42,8 +42,9 @@ public:
   virtual void build(gpu::Commands& commands, const gpu::SampledImage& volume, const VisibleScalars& visible) = 0;
   /// What rays read, in VK_IMAGE_LAYOUT_GENERAL.
   virtual gpu::SampledImage image() const = 0;
-  /// For the ray marcher; cheap, and all that a bitfield octree needs of a new transfer function.
-  virtual SkippingConstants constants(const VisibleScalars& visible) const = 0;
+  /// For the ray marcher; cheap, and all that a bitfield octree needs of a new transfer function. `kept` and `beyond`:
+  /// what shows on either side of clipping planes.
+  virtual SkippingConstants constants(const VisibleScalars& kept, const VisibleScalars& beyond) const = 0;
 };
 
 /// Pipelines and memory. `volume` is what build() will be given. Throws UnsupportedError.

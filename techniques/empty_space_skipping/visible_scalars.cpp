@@ -13,6 +13,17 @@ VisibleScalars::VisibleScalars(const parts::TransferTable& table) {
     m_before.push_back(m_before.back() + (shows ? 1 : 0));
 }
 
+VisibleScalars VisibleScalars::either(const VisibleScalars& other) const {
+  assert(m_before.size() == other.m_before.size());
+  VisibleScalars result;
+  result.m_before.push_back(0);
+  for (std::size_t i = 1; i < m_before.size(); ++i) {
+    const bool shows = m_before[i] > m_before[i - 1] || other.m_before[i] > other.m_before[i - 1];
+    result.m_before.push_back(result.m_before.back() + (shows ? 1 : 0));
+  }
+  return result;
+}
+
 bool VisibleScalars::anyBetween(float low, float high) const {
   const auto scale = static_cast<float>(entries() - 1);
   const int from = std::max(static_cast<int>(std::floor(low * scale)) - 1, 0);

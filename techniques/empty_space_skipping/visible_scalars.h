@@ -15,6 +15,9 @@ public:
   VisibleScalars() = default;
   explicit VisibleScalars(const parts::TransferTable& table);
 
+  /// What one or the other shows; both of tables of the same width.
+  VisibleScalars either(const VisibleScalars& other) const;
+
   /// Whether anything between two normalised scalars shows, one entry of the table beyond each end included: what the
   /// table's lookups and the sampler's rounding can reach. Equal to showsBetween() of visible.glsl, bit by bit.
   bool anyBetween(float low, float high) const;

@@ -1,18 +1,35 @@
 // Emission and absorption along a path, front to back, in parts: what every direct volume renderer shares. A technique
-// decides which parts of a ray it visits, and calls accumulate() for them, front to back.
+// decides which parts of a ray it visits, and calls accumulate() for them, front to back:
+//   beginRay(); for each portion: beginPortion(), accumulateBeginning(), accumulate() ...; finishRay().
+// Macros: PREINTEGRATED. BEYOND_BINDING: what clipping planes cut off is drawn, too, by the table bound there.
+// SHADOWS_BINDING: samples look up the opacity shadow map bound there. SHADOW_MAP_BINDING: the rays are the light's, and
+// write that map instead of a picture.
 #ifndef PARTS_EMISSION_ABSORPTION_GLSL
 #define PARTS_EMISSION_ABSORPTION_GLSL
 
 #include <parts/march.glsl>
+#ifdef SHADOWS_BINDING
+#include <parts/shadows.glsl>
+#endif
 #include <volmark/transfer_function.glsl>
 
 layout(constant_id = kIdEarlyTermination) const bool kEarlyTermination = true;
 
-// Colour and opacity of one step (transfer_table.h). The macro PREINTEGRATED changes the table's type.
+// Colour and opacity of one step (transfer_table.h).
 #ifdef PREINTEGRATED
-layout(set = 0, binding = kBindingOwn) uniform sampler2D table;
+#define TABLE_SAMPLER sampler2D
 #else
-layout(set = 0, binding = kBindingOwn) uniform sampler1D table;
+#define TABLE_SAMPLER sampler1D
+#endif
+layout(set = 0, binding = kBindingOwn) uniform TABLE_SAMPLER table;
+#ifdef BEYOND_BINDING
+layout(set = 0, binding = BEYOND_BINDING) uniform TABLE_SAMPLER tableBeyond;
+#define LOOK_UP(by, coordinate) (by.beyond ? textureLod(tableBeyond, coordinate, 0.0) : textureLod(table, coordinate, 0.0))
+#else
+#define LOOK_UP(by, coordinate) textureLod(table, coordinate, 0.0)
+#endif
+#ifdef SHADOW_MAP_BINDING
+layout(set = 0, binding = SHADOW_MAP_BINDING, rgba32f) uniform writeonly image2D shadowImage;
 #endif
 
 // Samples (or slabs) between two checks of the loop. Drivers that call functions to sample textures keep what is
@@ -25,7 +42,39 @@ struct Accumulation {
   uint samples;
   uint visible; // of them, with opacity
   uint gradients;
+#ifdef SHADOW_MAP_BINDING
+  vec4 depths; // at which so much of the light is gone
+  int known;   // of them
+#endif
 };
+
+#ifdef SHADOW_MAP_BINDING
+
+// The map's texels hold the distances from the light, in world units, at which a ray's transmittance falls to this.
+float transmittanceOfDepth(int i) {
+  return (float(kShadowDepths - i) - 0.5) / float(kShadowDepths);
+}
+
+// A ray ends when all is known that is to be known of it.
+bool goesOn(float transmittance) {
+  return transmittance > transmittanceOfDepth(kShadowDepths - 1);
+}
+
+void add(VolumeGrid grid, Path path, vec4 sampled, float place, bool there, inout Accumulation sum) {
+  bool counts = there && goesOn(sum.transmittance);
+  if (kCounting && counts) {
+    ++sum.samples;
+    if (sampled.a > 0.0) ++sum.visible;
+  }
+  if (!counts || sampled.a <= 0.0) return;
+  sum.transmittance -= sum.transmittance * sampled.a;
+  while (sum.known < kShadowDepths && sum.transmittance <= transmittanceOfDepth(sum.known)) {
+    sum.depths[sum.known] = path.entry + place * march.stepLength;
+    ++sum.known;
+  }
+}
+
+#else
 
 bool goesOn(float transmittance) {
   return !kEarlyTermination || transmittance > march.endTransmittance;
@@ -41,12 +90,20 @@ void add(VolumeGrid grid, Path path, vec4 sampled, float place, bool there, inou
   }
   vec3 color = sampled.rgb;
   if (kShadingModel != kShadingNone && weight > 0.0) {
-    color = shadeOnPath(path, color, normalAt(grid, path, place));
+    vec3 world = worldAt(grid, path, place);
+#ifdef SHADOWS_BINDING
+    float arriving = shareThatArrives(world);
+#else
+    float arriving = 1.0;
+#endif
+    color = shadeOnPath(path, world, color, normalAt(grid, world), arriving);
     if (kCounting) ++sum.gradients;
   }
   sum.color += weight * color;
   sum.transmittance -= weight;
 }
+
+#endif
 
 // What the transfer function says of texel values.
 struct Classification {
@@ -54,11 +111,67 @@ struct Classification {
   float bias;
   float visibleLow;   // texels at or below are transparent
   float visibleHigh;  // and those at or above
+  bool beyond;        // of what clipping planes cut off
 };
 
-Classification classification(VolumeGrid grid) {
+Classification classification(VolumeGrid grid, bool beyond) {
   return Classification(march.tableScale * grid.valueScale, march.tableScale * grid.valueBias + march.tableBias,
-                        texelOf(grid, march.visibleLow), texelOf(grid, march.visibleHigh));
+                        texelOf(grid, beyond ? march.visibleLowBeyond : march.visibleLow),
+                        texelOf(grid, beyond ? march.visibleHighBeyond : march.visibleHigh), beyond);
+}
+
+// Rays and their parts.
+
+ivec2 pictureSize() {
+#ifdef SHADOW_MAP_BINDING
+  return ivec2(march.shadowSize);
+#else
+  return frame.size;
+#endif
+}
+
+Accumulation nothingYet() {
+#ifdef SHADOW_MAP_BINDING
+  return Accumulation(vec3(0), 1.0, 0u, 0u, 0u, vec4(infinity()), 0);
+#else
+  return Accumulation(vec3(0), 1.0, 0u, 0u, 0u);
+#endif
+}
+
+// False if there is nothing to draw.
+bool beginRay(VolumeGrid grid, ivec2 pixel, uint view, out Path path) {
+  if (any(greaterThanEqual(pixel, pictureSize()))) return false;
+#ifdef BEYOND_BINDING
+  bool beyond = true;
+#else
+  bool beyond = false;
+#endif
+#ifdef SHADOW_MAP_BINDING
+  vec2 tangents = ((vec2(pixel) + 0.5) / float(march.shadowSize) * 2.0 - 1.0) * march.shadowTangent;
+  vec3 direction = march.shadowForward + tangents.x * march.shadowRight + tangents.y * march.shadowUp;
+  Ray ray = Ray(frame.light.xyz, normalize(direction), 1.0);
+  return makePath(grid, ray, 0.0, true, beyond, path);
+#else
+  return makePath(grid, pixelRay(pixel, view), pixelShift(pixel), true, beyond, path);
+#endif
+}
+
+// Parts of a ray with one transfer function each: before, between and behind clipping planes.
+#ifdef BEYOND_BINDING
+const int kPortions = 3;
+#else
+const int kPortions = 1;
+#endif
+
+// Makes `path` portion n of itself.
+Classification beginPortion(VolumeGrid grid, int n, inout Path path) {
+#ifdef BEYOND_BINDING
+  path.first = n == 0 ? 0.0 : n == 1 ? path.keptFirst : path.keptPlaces;
+  path.places = n == 0 ? path.keptFirst : n == 1 ? path.keptPlaces : path.boxPlaces;
+  return classification(grid, n != 1);
+#else
+  return classification(grid, false);
+#endif
 }
 
 // True if there may be opacity between the lowest and the highest of some texel values.
@@ -79,7 +192,7 @@ int sampleEnd(Path path) {
 
 // Straight colour and opacity of a sample. The sampler clamps.
 vec4 classify(Classification by, float texel) {
-  return textureLod(table, by.scale * texel + by.bias, 0.0);
+  return LOOK_UP(by, by.scale * texel + by.bias);
 }
 
 // What lies before the first sample: nothing.
@@ -112,7 +225,7 @@ void accumulate(VolumeGrid grid, Path path, Classification by, int first, int en
 
 // Straight colour and opacity of a slab; colours are interpolated premultiplied.
 vec4 classify(Classification by, float front, float back) {
-  vec4 slab = textureLod(table, by.scale * vec2(front, back) + by.bias, 0.0);
+  vec4 slab = LOOK_UP(by, by.scale * vec2(front, back) + by.bias);
   return vec4(slab.rgb / max(slab.a, 1e-30), slab.a);
 }
 
@@ -172,12 +285,19 @@ void accumulate(VolumeGrid grid, Path path, Classification by, int first, int en
 
 // Writes and counts what has been gathered; every invocation of the workgroup calls it. `nodes`: questions asked of a
 // structure, which count as steps of the ray.
-void finishRay(ivec2 pixel, uint view, bool inPicture, bool entered, Accumulation sum, uint nodes) {
+void finishRay(ivec2 pixel, uint view, bool entered, Accumulation sum, uint nodes) {
+  bool inPicture = all(lessThan(pixel, pictureSize()));
+#ifdef SHADOW_MAP_BINDING
+  if (inPicture) imageStore(shadowImage, pixel, sum.depths);
+  if (kCounting) addToCounterBySubgroup(kCounterShadowSamples, sum.samples);
+  if (kCounting) addToCounterBySubgroup(kCounterShadowNodes, nodes);
+#else
   if (inPicture)
     writePixel(pixel, view, vec4(sum.color, 1.0 - sum.transmittance), infinity(), sum.samples + nodes);
   countRay(sum.samples, entered, entered && !goesOn(sum.transmittance), sum.gradients);
   if (kCounting) addToCounterBySubgroup(kCounterVisible, sum.visible);
   if (kCounting) addToCounterBySubgroup(kCounterNodes, nodes);
+#endif
 }
 
 #endif

@@ -34,8 +34,11 @@ layout(push_constant, scalar) uniform MarchBlock {
 struct Path {
   Ray ray;
   float entry;          // ray parameter of place 0, world units
-  float first;          // place where the part that is not clipped away begins
-  float places;         // of the exit, in steps; not an integer in general
+  float first;          // place where the part to be drawn begins
+  float places;         // and ends, in steps; not an integer in general
+  float keptFirst;      // volumes: the part that clipping planes keep, and the exit from the box
+  float keptPlaces;
+  float boxPlaces;
   vec3 entryNormal;
   vec3 base;            // texture coordinates, or voxel coordinates where the shader filters
   vec3 delta;
@@ -49,25 +52,40 @@ float jitterOf(ivec2 pixel) {
   return toUnitFloat(randomBits(frame.seed, index, frame.frameIndex, 0u));
 }
 
-// False if the ray misses the volume or all of it is clipped away. Place 0 is where the ray enters the box if
-// `fromBox`, so that clipping planes move no sample, else where they leave it.
-bool makePath(VolumeGrid grid, ivec2 pixel, uint view, bool fromBox, out Path path) {
-  path.ray = rayThroughPixel(frame.views[view], pixel, frame.size);
+// False if the ray misses the volume or all of it is clipped away; with `beyond`, that is kept apart. Place 0 is where the
+// ray enters the box if `fromBox`, so that clipping planes move no sample, else where they leave it.
+bool makePath(VolumeGrid grid, Ray ray, float shift, bool fromBox, bool beyond, out Path path) {
+  path.ray = ray;
   RayInterval interval = wholeRay(path.ray);
   cutByBox(path.ray, grid.boxMinimum, grid.boxMaximum, interval);
   path.entry = interval.entry;
+  float boxExit = interval.exit;
   cutByClippingPlanes(frame, path.ray, interval);
-  if (interval.entry > interval.exit) return false;
+  if (interval.entry > interval.exit) {
+    if (!beyond || path.entry > boxExit) return false;
+    interval.entry = interval.exit = boxExit;
+  }
   if (!fromBox) path.entry = interval.entry;
   path.entryNormal = interval.normal;
   path.first = (interval.entry - path.entry) / march.stepLength;
   path.places = (interval.exit - path.entry) / march.stepLength;
+  path.keptFirst = path.first;
+  path.keptPlaces = path.places;
+  path.boxPlaces = (boxExit - path.entry) / march.stepLength;
   vec3 unit = kShaderFiltering ? vec3(1) : 1.0 / vec3(grid.dims);
   vec3 toUnit = grid.voxelsPerUnit * unit;
   path.base = (pointOnRay(path.ray, path.entry) - grid.boxMinimum) * toUnit + (kShaderFiltering ? vec3(0) : 0.5 * unit);
   path.delta = path.ray.direction * march.stepLength * toUnit;
-  path.shift = kJitter ? jitterOf(pixel) : 0.0;
+  path.shift = shift;
   return true;
+}
+
+// The ray of a pixel, and the shift of its samples.
+Ray pixelRay(ivec2 pixel, uint view) {
+  return rayThroughPixel(frame.views[view], pixel, frame.size);
+}
+float pixelShift(ivec2 pixel) {
+  return kJitter ? jitterOf(pixel) : 0.0;
 }
 
 // The volume's texel value at a place. Neither normalised nor clamped: it is compared with texelOf() a scalar,
@@ -87,17 +105,21 @@ float texelOf(VolumeGrid grid, float scalar) {
   return (scalar - grid.valueBias) / grid.valueScale;
 }
 
-// Unit normal towards lower values at a place, or zero where the field has no gradient.
-vec3 normalAt(VolumeGrid grid, Path path, float place) {
+vec3 worldAt(VolumeGrid grid, Path path, float place) {
   vec3 world = pointOnRay(path.ray, path.entry + place * march.stepLength);
-  world = clamp(world, grid.boxMinimum, grid.boxMaximum);
+  return clamp(world, grid.boxMinimum, grid.boxMaximum);
+}
+
+// Unit normal towards lower values, or zero where the field has no gradient.
+vec3 normalAt(VolumeGrid grid, vec3 world) {
   return normalOfGradient(sampleGradient(volume, grid, world, kShaderFiltering));
 }
 
-vec3 shadeOnPath(Path path, vec3 color, vec3 normal) {
+// `arriving`: share of the light that nothing keeps from `world`.
+vec3 shadeOnPath(Path path, vec3 world, vec3 color, vec3 normal, float arriving) {
   vec3 toEye = -path.ray.direction;
-  vec3 toLight = frame.headlight != 0u ? toEye : frame.lightDirection;
-  return shade(kShadingModel, color, normal, toLight, toEye, frame.lightColor, frame.ambient);
+  vec3 toLight = towardsLight(frame, world, toEye);
+  return shade(kShadingModel, color, normal, toLight, toEye, arriving * frame.lightColor, frame.ambient);
 }
 
 // The distance of a pixel without a surface.

@@ -41,39 +41,59 @@ void registerPartsShaders() {
   static_cast<void>(registered);
 }
 
-Marcher::Marcher(const Preparation& preparation, const MarcherDescription& description, Recorder& recorder)
+Marcher::Marcher(const Preparation& preparation, Recorder& recorder)
     : m_scene(&preparation.scene), m_stepLength(static_cast<float>(preparation.parameters.number("step") *
                                                                    m_scene->volume->grid().smallestSpacingMm())),
       m_volume(*preparation.device, preparation.scene, filteringOf(preparation.parameters), recorder, 0,
                preparation.scene.volume->timeSteps()),
       m_counters(*preparation.device, kCounterCount) {
   registerPartsShaders();
-  const Pass pass = recorder.hostPass("pipelines");
-  m_timed = makePipeline(*preparation.device, description, false, preparation);
-  m_counting = makePipeline(*preparation.device, description, true, preparation);
 }
 
-gpu::Pipeline Marcher::makePipeline(gpu::Device& device, MarcherDescription description, bool counting,
-                                    const Preparation& preparation) const {
+MarchPipelines Marcher::makePipelines(const Preparation& preparation, MarcherDescription description) const {
+  return {makePipeline(preparation, description, false), makePipeline(preparation, description, true)};
+}
+
+gpu::Pipeline Marcher::makePipeline(const Preparation& preparation, MarcherDescription description,
+                                    bool counting) const {
   description.variant.set(kIdShaderFiltering, m_volume.filtering() == gpu::Filtering::shader)
       .set(kIdShadingModel, static_cast<std::uint32_t>(preparation.scene.shading.model))
       .set(kIdJitter, preparation.parameters.boolean("jitter"))
       .set(kIdCounting, counting);
-  return {device, gpu::ComputePipelineDescription{.name = description.shader.path + (counting ? " counting" : ""),
-                                                  .shader = description.shader,
-                                                  .layout = layoutOf(description.own),
-                                                  .specialisation = description.variant}};
+  return {*preparation.device,
+          gpu::ComputePipelineDescription{.name = description.shader.path + (counting ? " counting" : ""),
+                                          .shader = description.shader,
+                                          .layout = layoutOf(description.own),
+                                          .specialisation = description.variant}};
 }
 
-void Marcher::march(const Frame& frame, std::uint64_t seed, MarchConstants constants,
-                    std::span<const gpu::Resource> own, Recorder& recorder) const {
+void Marcher::beginFrame(const Frame& frame, Recorder& recorder) const {
+  if (frame.counting) m_counters.clear(recorder.gpu());
+}
+
+void Marcher::march(const MarchPipelines& pipelines, const Frame& frame, std::uint64_t seed,
+                    const MarchConstants& constants, std::span<const gpu::Resource> own, Recorder& recorder) const {
+  const glm::uvec3 groups((frame.target->width + kGroupSize - 1) / kGroupSize,
+                          (frame.target->height + kGroupSize - 1) / kGroupSize, frame.inputs.views.size());
+  const Pass pass = recorder.pass("march");
+  dispatch(pipelines, frame, seed, constants, own, groups, recorder);
+}
+
+void Marcher::marchFromLight(const MarchPipelines& pipelines, const Frame& frame, const MarchConstants& constants,
+                             std::span<const gpu::Resource> own, Recorder& recorder) const {
+  const auto groups = static_cast<std::uint32_t>((constants.shadowSize + kGroupSize - 1) / kGroupSize);
+  const Pass pass = recorder.pass("shadow_map");
+  dispatch(pipelines, frame, 0, constants, own, {groups, groups, 1}, recorder);
+}
+
+void Marcher::dispatch(const MarchPipelines& pipelines, const Frame& frame, std::uint64_t seed,
+                       MarchConstants constants, std::span<const gpu::Resource> own, glm::uvec3 groups,
+                       Recorder& recorder) const {
   assert(frame.target && static_cast<int>(frame.inputs.views.size()) <= gpu::kMaxViews);
   constants.stepLength = m_stepLength;
   constants.layers = layersOf(frame.inputs.views);
 
-  const Pass pass = recorder.pass("march");
   gpu::Commands& commands = recorder.gpu();
-  if (frame.counting) m_counters.clear(commands);
   std::vector<gpu::Resource> resources = {commands.constants(gpu::frameConstants(frame, *m_scene, m_volume, seed)),
                                           m_volume.at(frame.inputs.timeStep),
                                           gpu::StorageImage{frame.target->color.view()},
@@ -81,9 +101,7 @@ void Marcher::march(const Frame& frame, std::uint64_t seed, MarchConstants const
                                           m_counters.range(),
                                           gpu::StorageImage{frame.target->steps.view()}};
   resources.insert(resources.end(), own.begin(), own.end());
-  const glm::uvec3 groups((frame.target->width + kGroupSize - 1) / kGroupSize,
-                          (frame.target->height + kGroupSize - 1) / kGroupSize, frame.inputs.views.size());
-  commands.dispatch(frame.counting ? m_counting : m_timed, resources, gpu::bytesOf(constants), groups);
+  commands.dispatch(frame.counting ? pipelines.counting : pipelines.timed, resources, gpu::bytesOf(constants), groups);
   if (frame.counting) commands.barrier(gpu::kComputeWrite, gpu::kHostRead);
 }
 

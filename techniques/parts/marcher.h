@@ -1,4 +1,5 @@
-// What every ray marcher does on the host: the volume, two pipelines (timed and counting), one dispatch for all views.
+// What every ray marcher does on the host: the volume, pairs of pipelines (timed and counting), one dispatch for all
+// views.
 #pragma once
 
 #include "parts/shared.h"
@@ -23,14 +24,29 @@ struct MarcherDescription {
   std::vector<VkDescriptorType> own; ///< of bindings kBindingOwn and following
 };
 
+struct MarchPipelines {
+  gpu::Pipeline timed;
+  gpu::Pipeline counting;
+};
+
 class Marcher {
 public:
-  /// Generation passes "upload" and "pipelines". Reads the parameters filtering and jitter.
-  Marcher(const Preparation& preparation, const MarcherDescription& description, Recorder& recorder);
+  /// Generation pass "upload". Reads the parameters filtering and jitter.
+  Marcher(const Preparation& preparation, Recorder& recorder);
 
-  /// Records the pass "march". `own` is bound from kBindingOwn on. Sets stepLength and layers of `constants`.
-  void march(const Frame& frame, std::uint64_t seed, MarchConstants constants, std::span<const gpu::Resource> own,
-             Recorder& recorder) const;
+  MarchPipelines makePipelines(const Preparation& preparation, MarcherDescription description) const;
+
+  /// Before the first pass of a frame.
+  void beginFrame(const Frame& frame, Recorder& recorder) const;
+
+  /// Records the pass "march", all views. `own` is bound from kBindingOwn on. Sets stepLength and layers of
+  /// `constants`.
+  void march(const MarchPipelines& pipelines, const Frame& frame, std::uint64_t seed, const MarchConstants& constants,
+             std::span<const gpu::Resource> own, Recorder& recorder) const;
+
+  /// Records the pass "shadow_map": rays of the light, for constants.shadowSize squared texels.
+  void marchFromLight(const MarchPipelines& pipelines, const Frame& frame, const MarchConstants& constants,
+                      std::span<const gpu::Resource> own, Recorder& recorder) const;
 
   const gpu::VolumeTexture& volume() const { return m_volume; }
 
@@ -38,14 +54,13 @@ public:
   std::vector<std::uint64_t> counts() const { return m_counters.read(); }
 
 private:
-  gpu::Pipeline makePipeline(gpu::Device& device, MarcherDescription description, bool counting,
-                             const Preparation& preparation) const;
+  gpu::Pipeline makePipeline(const Preparation& preparation, MarcherDescription description, bool counting) const;
+  void dispatch(const MarchPipelines& pipelines, const Frame& frame, std::uint64_t seed, MarchConstants constants,
+                std::span<const gpu::Resource> own, glm::uvec3 groups, Recorder& recorder) const;
 
   const Scene* m_scene;
   float m_stepLength;
   gpu::VolumeTexture m_volume;
-  gpu::Pipeline m_timed;
-  gpu::Pipeline m_counting;
   gpu::CounterBuffer m_counters;
 };
 

@@ -3,8 +3,11 @@
 #define PARTS_SHARED_H
 
 #ifdef __cplusplus
+#include <glm/glm.hpp>
+
 #include <cstdint>
 namespace volmark::parts {
+using glm::vec3;
 using uint = std::uint32_t;
 #endif
 
@@ -30,9 +33,14 @@ const int kCounterSamples = 0;
 const int kCounterRays = 1;
 const int kCounterEnded = 2; // hits of a surface, or rays ended by early termination
 const int kCounterGradients = 3;
-const int kCounterVisible = 4; // volumes only: samples (slabs) with opacity
-const int kCounterNodes = 5;   // of structures: questions whether a place is empty
-const int kCounterCount = 6;
+const int kCounterVisible = 4;       // volumes only: samples (slabs) with opacity
+const int kCounterNodes = 5;         // of structures: questions whether a place is empty
+const int kCounterShadowSamples = 6; // the same of rays from the light
+const int kCounterShadowNodes = 7;
+const int kCounterCount = 8;
+
+// Depths of a texel of a shadow map: the components of a vec4.
+const int kShadowDepths = 4;
 
 // Pixels of a workgroup, each way.
 const int kGroupSize = 8;
@@ -47,10 +55,19 @@ struct MarchConstants {
   float visibleHigh;      // and those at or above
   float tableScale;       // normalised scalar to table coordinate
   float tableBias;
+  float visibleLowBeyond; // of what clipping planes cut off
+  float visibleHighBeyond;
+  // Of a shadow map, which is seen from the light:
+  vec3 shadowRight;
+  vec3 shadowUp;
+  vec3 shadowForward;
+  float shadowTangent; // from its middle to its sides
+  float shadowBias;    // world units
+  int shadowSize;      // texels along each side
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(MarchConstants) == 32);
+static_assert(sizeof(MarchConstants) == 88);
 } // namespace volmark::parts
 #endif
 

@@ -12,15 +12,25 @@ bool asksForPreintegration(const ParameterValues& parameters) {
 
 } // namespace
 
-MarcherDescription VolumeMarcher::marcherDescription(const ParameterValues& parameters,
-                                                     const VolumeMarcherDescription& description) {
-  MarcherDescription result{.shader = {.path = description.shader, .macros = description.macros},
+void VolumeMarcher::makePipelines(const Preparation& preparation, const VolumeMarcherDescription& description) {
+  MarcherDescription common{.shader = {.path = description.shader, .macros = description.macros},
                             .variant = description.variant,
                             .own = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}};
-  if (asksForPreintegration(parameters)) result.shader.macros.emplace_back("PREINTEGRATED", "1");
-  result.variant.set(kIdEarlyTermination, parameters.boolean("early_termination"));
-  result.own.insert(result.own.end(), description.own.begin(), description.own.end());
-  return result;
+  if (m_preintegrated) common.shader.macros.emplace_back("PREINTEGRATED", "1");
+  common.variant.set(kIdEarlyTermination, preparation.parameters.boolean("early_termination"));
+  common.own.insert(common.own.end(), description.own.begin(), description.own.end());
+  const auto bind = [](MarcherDescription& one, const char* macro, VkDescriptorType type) {
+    one.shader.macros.emplace_back(macro, std::to_string(kBindingOwn + static_cast<int>(one.own.size())));
+    one.own.push_back(type);
+  };
+  if (m_beyond) bind(common, "BEYOND_BINDING", VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+  MarcherDescription picture = common;
+  if (m_shadows) {
+    bind(common, "SHADOW_MAP_BINDING", VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+    m_shadowPipelines = m_marcher.makePipelines(preparation, common);
+    bind(picture, "SHADOWS_BINDING", VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+  }
+  m_pipelines = m_marcher.makePipelines(preparation, picture);
 }
 
 VolumeMarcher::VolumeMarcher(const Preparation& preparation, const VolumeMarcherDescription& description,
@@ -28,39 +38,79 @@ VolumeMarcher::VolumeMarcher(const Preparation& preparation, const VolumeMarcher
     : m_step(preparation.parameters.number("step")), m_preintegrated(asksForPreintegration(preparation.parameters)),
       m_tableSize(
           static_cast<int>(preparation.parameters.integer(m_preintegrated ? "preintegrated_size" : "table_size"))),
-      m_marcher(preparation, marcherDescription(preparation.parameters, description), recorder) {
-  const auto size = static_cast<std::uint32_t>(m_tableSize);
-  m_tableImage =
-      gpu::Image(*preparation.device, {.name = "transfer_function",
-                                       .type = m_preintegrated ? VK_IMAGE_TYPE_2D : VK_IMAGE_TYPE_1D,
-                                       .format = kTableFormat,
-                                       .extent = {size, m_preintegrated ? size : 1, 1},
-                                       .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+      m_shadowBias(preparation.parameters.number("shadow_bias")), m_marcher(preparation, recorder),
+      m_scene(&preparation.scene), m_kept(makeTable(*preparation.device, "transfer_function")) {
+  const Scene& scene = preparation.scene;
+  if (scene.functionBeyond) m_beyond = makeTable(*preparation.device, "transfer_function_beyond");
+  // Unshaded colours need no light.
+  if (scene.shading.shadows && scene.shading.model != ShadingModel::none)
+    m_shadows.emplace(*preparation.device, static_cast<int>(preparation.parameters.integer("shadow_resolution")));
   m_tableSampler = gpu::Sampler(*preparation.device, m_preintegrated ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
+  {
+    const Pass pass = recorder.hostPass("pipelines");
+    makePipelines(preparation, description);
+  }
   m_constants.endTransmittance = static_cast<float>(1 - preparation.parameters.number("termination_opacity"));
   // Entry i lies at scalar i/(size-1) and at table coordinate (i+0.5)/size.
   m_constants.tableScale = static_cast<float>(m_tableSize - 1) / static_cast<float>(m_tableSize);
   m_constants.tableBias = 0.5f / static_cast<float>(m_tableSize);
 }
 
-void VolumeMarcher::update(const Changes& changes, const FrameInputs& inputs, Recorder& recorder) {
-  if (!changes.transferFunction) return;
+TableOnGpu VolumeMarcher::makeTable(gpu::Device& device, const char* name) const {
+  const auto size = static_cast<std::uint32_t>(m_tableSize);
+  return {.image = gpu::Image(device, {.name = name,
+                                       .type = m_preintegrated ? VK_IMAGE_TYPE_2D : VK_IMAGE_TYPE_1D,
+                                       .format = kTableFormat,
+                                       .extent = {size, m_preintegrated ? size : 1, 1},
+                                       .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT})};
+}
+
+void VolumeMarcher::fill(TableOnGpu& table, const TransferFunction& function, Recorder& recorder) const {
   {
     const Pass pass = recorder.hostPass("build_transfer_function");
-    m_table =
-        (m_preintegrated ? preintegratedTable : postClassifiedTable)(*inputs.transferFunction, m_tableSize, m_step);
+    table.table = (m_preintegrated ? preintegratedTable : postClassifiedTable)(function, m_tableSize, m_step);
   }
-  m_constants.visibleLow = m_table.visibleLow;
-  m_constants.visibleHigh = m_table.visibleHigh;
   const Pass pass = recorder.pass("upload_transfer_function");
-  recorder.gpu().upload(m_tableImage, std::as_bytes(std::span(m_table.entries)));
+  recorder.gpu().upload(table.image, std::as_bytes(std::span(table.table.entries)));
+}
+
+void VolumeMarcher::update(const Changes& changes, const FrameInputs& inputs, Recorder& recorder) {
+  // The other function belongs to the scene.
+  if (m_beyond && m_beyond->table.entries.empty()) {
+    fill(*m_beyond, *m_scene->functionBeyond, recorder);
+    m_constants.visibleLowBeyond = m_beyond->table.visibleLow;
+    m_constants.visibleHighBeyond = m_beyond->table.visibleHigh;
+  }
+  if (!changes.transferFunction) return;
+  fill(m_kept, *inputs.transferFunction, recorder);
+  m_constants.visibleLow = m_kept.table.visibleLow;
+  m_constants.visibleHigh = m_kept.table.visibleHigh;
+}
+
+void VolumeMarcher::drawShadowMap(const Frame& frame, std::vector<gpu::Resource> resources,
+                                  const MarchConstants& constants, Recorder& recorder) const {
+  resources.emplace_back(m_shadows->written());
+  m_shadows->beginWriting(recorder.gpu());
+  m_marcher.marchFromLight(m_shadowPipelines, frame, constants, resources, recorder);
+  m_shadows->endWriting(recorder.gpu());
 }
 
 void VolumeMarcher::draw(const Frame& frame, std::uint64_t seed, std::span<const gpu::Resource> own,
                          Recorder& recorder) const {
-  std::vector<gpu::Resource> resources = {gpu::SampledImage{m_tableImage.layerView(0), m_tableSampler.handle()}};
+  const auto tableOf = [&](const TableOnGpu& table) {
+    return gpu::SampledImage{table.image.layerView(0), m_tableSampler.handle()};
+  };
+  std::vector<gpu::Resource> resources = {tableOf(m_kept)};
   resources.insert(resources.end(), own.begin(), own.end());
-  m_marcher.march(frame, seed, m_constants, resources, recorder);
+  if (m_beyond) resources.emplace_back(tableOf(*m_beyond));
+  m_marcher.beginFrame(frame, recorder);
+  MarchConstants constants = m_constants;
+  if (m_shadows) {
+    m_shadows->describe(frame.inputs.light, m_scene->volume->grid(), m_shadowBias, constants);
+    drawShadowMap(frame, resources, constants, recorder);
+    resources.emplace_back(m_shadows->read());
+  }
+  m_marcher.march(m_pipelines, frame, seed, constants, resources, recorder);
 }
 
 std::vector<ParameterDescriptor> emissionParameters() {
@@ -73,32 +123,36 @@ std::vector<ParameterDescriptor> emissionParameters() {
           ParameterDescriptor::boolean("early_termination", true, "End a ray that has become opaque."),
           ParameterDescriptor::number("termination_opacity", 0.99, 0.5, 1, "", "Opacity that ends a ray."),
           filteringParameter(),
-          jitterParameter()};
+          jitterParameter(),
+          ParameterDescriptor::integer("shadow_resolution", 1024, 16, 8192, "texel",
+                                       "Side of the shadow map, of scenes with shadows; marched in every frame."),
+          ParameterDescriptor::number("shadow_bias", 1, 0, 16, "voxel",
+                                      "Samples nearer to what shades them than this are lit.")};
 }
 
 std::vector<PassDescriptor> emissionPasses() {
   return {{"build_transfer_function", "The table on the host, when the transfer function has changed."},
           {"upload_transfer_function", "The table to the GPU."},
+          {"shadow_map", "All rays of the light, of scenes with shadows."},
           {"march", "All rays of all views."}};
 }
 
 std::vector<PassDescriptor> emissionGeneration() {
-  return {{"upload", "The volume's voxels to the GPU."}, {"pipelines", "The timed and the counting pipeline."}};
+  return {{"upload", "The volume's voxels to the GPU."}, {"pipelines", "The timed and the counting pipelines."}};
 }
 
 std::vector<CounterDescriptor> emissionCounters() {
   std::vector<CounterDescriptor> counters =
       counterDescriptors("terminated_rays", "Rays that end before the exit because they are opaque.");
   counters.push_back({"visible_samples", CounterKind::perDevice, "Samples (slabs if pre-integrated) with opacity."});
+  counters.push_back({"shadow_samples", CounterKind::perDevice, "Samples along rays of the light."});
   return counters;
 }
 
 std::vector<CounterValue> emissionCounterValues(const std::vector<std::uint64_t>& counts) {
-  return {{"samples", counts[kCounterSamples]},
-          {"rays", counts[kCounterRays]},
-          {"terminated_rays", counts[kCounterEnded]},
-          {"gradients", counts[kCounterGradients]},
-          {"visible_samples", counts[kCounterVisible]}};
+  return {{"samples", counts[kCounterSamples]},         {"rays", counts[kCounterRays]},
+          {"terminated_rays", counts[kCounterEnded]},   {"gradients", counts[kCounterGradients]},
+          {"visible_samples", counts[kCounterVisible]}, {"shadow_samples", counts[kCounterShadowSamples]}};
 }
 
 std::vector<ShadingModel> emissionShadings() {

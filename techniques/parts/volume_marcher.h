@@ -3,6 +3,7 @@
 #pragma once
 
 #include "parts/marcher.h"
+#include "parts/shadow_map.h"
 #include "parts/transfer_table.h"
 
 #include <optional>
@@ -20,20 +21,29 @@ struct VolumeMarcherDescription {
   std::vector<VkDescriptorType> own{};                       ///< bindings after the table
 };
 
+/// A transfer function as rays read it, on host and device.
+struct TableOnGpu {
+  TransferTable table;
+  gpu::Image image;
+};
+
 class VolumeMarcher {
 public:
-  /// Generation passes "upload" and "pipelines". Reads the parameters of emissionParameters().
+  /// Generation passes "upload" and "pipelines". Reads the parameters of emissionParameters(), the scene's shadows and
+  /// what it draws beyond clipping planes.
   VolumeMarcher(const Preparation& preparation, const VolumeMarcherDescription& description, Recorder& recorder);
 
   /// Passes "build_transfer_function" and "upload_transfer_function", if the function has changed.
   void update(const Changes& changes, const FrameInputs& inputs, Recorder& recorder);
 
-  /// The pass "march". `own` follows the table.
+  /// The passes "shadow_map", if the scene has shadows, and "march". `own` follows the table.
   void draw(const Frame& frame, std::uint64_t seed, std::span<const gpu::Resource> own, Recorder& recorder) const;
 
   const gpu::VolumeTexture& volume() const { return m_marcher.volume(); }
   /// What the shader reads, after update().
-  const TransferTable& table() const { return m_table; }
+  const TransferTable& table() const { return m_kept.table; }
+  /// The same of what clipping planes cut off; null if that is not drawn.
+  const TransferTable* tableBeyond() const { return m_beyond ? &m_beyond->table : nullptr; }
   double stepVoxels() const { return m_step; }
   bool isPreintegrated() const { return m_preintegrated; }
 
@@ -41,27 +51,35 @@ public:
   std::vector<std::uint64_t> counts() const { return m_marcher.counts(); }
 
 private:
-  static MarcherDescription marcherDescription(const ParameterValues& parameters,
-                                               const VolumeMarcherDescription& description);
+  void makePipelines(const Preparation& preparation, const VolumeMarcherDescription& description);
+  TableOnGpu makeTable(gpu::Device& device, const char* name) const;
+  void fill(TableOnGpu& table, const TransferFunction& function, Recorder& recorder) const;
+  void drawShadowMap(const Frame& frame, std::vector<gpu::Resource> resources, const MarchConstants& constants,
+                     Recorder& recorder) const;
 
   double m_step;
   bool m_preintegrated;
   int m_tableSize;
+  double m_shadowBias; ///< voxels
   Marcher m_marcher;
-  TransferTable m_table;
-  gpu::Image m_tableImage;
+  const Scene* m_scene;
+  TableOnGpu m_kept;
+  std::optional<TableOnGpu> m_beyond;
   gpu::Sampler m_tableSampler;
+  MarchPipelines m_pipelines;
+  std::optional<ShadowMap> m_shadows;
+  MarchPipelines m_shadowPipelines;
   MarchConstants m_constants{};
 };
 
 /// step, transfer_function_kind, table_size, preintegrated_size, early_termination, termination_opacity, filtering,
-/// jitter.
+/// jitter, shadow_resolution, shadow_bias.
 std::vector<ParameterDescriptor> emissionParameters();
-/// build_transfer_function, upload_transfer_function, march.
+/// build_transfer_function, upload_transfer_function, shadow_map, march.
 std::vector<PassDescriptor> emissionPasses();
 /// upload, pipelines.
 std::vector<PassDescriptor> emissionGeneration();
-/// samples, rays, terminated_rays, gradients, visible_samples.
+/// samples, rays, terminated_rays, gradients, visible_samples, shadow_samples.
 std::vector<CounterDescriptor> emissionCounters();
 /// Their values, from VolumeMarcher::counts().
 std::vector<CounterValue> emissionCounterValues(const std::vector<std::uint64_t>& counts);

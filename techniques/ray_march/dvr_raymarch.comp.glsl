@@ -9,14 +9,13 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   uint view = gl_WorkGroupID.z;
   VolumeGrid grid = volumeGrid(frame);
-  Accumulation sum = Accumulation(vec3(0), 1.0, 0u, 0u, 0u);
-  bool inPicture = all(lessThan(pixel, frame.size));
+  Accumulation sum = nothingYet();
   Path path;
-  bool entered = inPicture && makePath(grid, pixel, view, true, path);
-  if (entered) {
-    Classification by = classification(grid);
+  bool entered = beginRay(grid, pixel, view, path);
+  for (int n = 0; entered && n < kPortions; ++n) {
+    Classification by = beginPortion(grid, n, path);
     accumulateBeginning(grid, path, by, sum);
     accumulate(grid, path, by, firstSample(path), sampleEnd(path), sum);
   }
-  finishRay(pixel, view, inPicture, entered, sum, 0u);
+  finishRay(pixel, view, entered, sum, 0u);
 }

@@ -39,6 +39,8 @@ TechniqueInfo describe() {
           .draws = Draws::volume,
           .maximumViews = gpu::kMaxViews,
           .shadings = parts::emissionShadings(),
+          .shadows = true,
+          .functionBeyond = true,
           .parameters = parts::emissionParameters(),
           .passes = parts::emissionPasses(),
           .generation = parts::emissionGeneration(),

@@ -59,7 +59,7 @@ void main() {
   bool hit = false;
   bool inPicture = all(lessThan(pixel, frame.size));
   Path path;
-  bool entered = inPicture && makePath(grid, pixel, view, false, path);
+  bool entered = inPicture && makePath(grid, pixelRay(pixel, view), pixelShift(pixel), false, false, path);
   bool shadedByGradient = false;
   vec3 surfaceNormal = vec3(0); // of counting frames
   if (entered) {
@@ -68,11 +68,12 @@ void main() {
     if (hit) {
       // What is solid where the ray enters shows the side of the box, or the clipping plane.
       bool atEntry = place == 0.0;
+      vec3 world = worldAt(grid, path, place);
       vec3 normal = path.entryNormal;
-      if (!atEntry && kShadingModel != kShadingNone) normal = normalAt(grid, path, place);
+      if (!atEntry && kShadingModel != kShadingNone) normal = normalAt(grid, world);
       shadedByGradient = !atEntry && kShadingModel != kShadingNone;
-      color = vec4(shadeOnPath(path, frame.surfaceColor, normal), 1.0);
-      if (kCounting) surfaceNormal = atEntry || shadedByGradient ? normal : normalAt(grid, path, place);
+      color = vec4(shadeOnPath(path, world, frame.surfaceColor, normal, 1.0), 1.0);
+      if (kCounting) surfaceNormal = atEntry || shadedByGradient ? normal : normalAt(grid, world);
       distance = (path.entry + place * march.stepLength) * path.ray.cosine;
     }
   }

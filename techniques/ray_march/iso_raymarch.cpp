@@ -16,10 +16,12 @@ public:
   void prepare(const Preparation& preparation, Recorder& recorder) override {
     const std::vector<gpu::MemoryItem> before = preparation.device->ledger().items();
     m_bisections = static_cast<std::uint32_t>(preparation.parameters.integer("bisections"));
-    m_marcher.emplace(preparation,
-                      MarcherDescription{.shader = {.path = "ray_march/iso_raymarch.comp.glsl"},
-                                         .own = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},
-                      recorder);
+    m_marcher.emplace(preparation, recorder);
+    {
+      const Pass pass = recorder.hostPass("pipelines");
+      m_pipelines = m_marcher->makePipelines(preparation, {.shader = {.path = "ray_march/iso_raymarch.comp.glsl"},
+                                                           .own = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}});
+    }
     m_memory = memoryAdded(before, preparation.device->ledger().items());
   }
 
@@ -29,7 +31,8 @@ public:
 
   void draw(const Frame& frame, Recorder& recorder) override {
     const gpu::Resource normals[] = {gpu::StorageImage{frame.target->normal.view()}};
-    m_marcher->march(frame, m_seed, MarchConstants{.bisections = m_bisections}, normals, recorder);
+    m_marcher->beginFrame(frame, recorder);
+    m_marcher->march(m_pipelines, frame, m_seed, MarchConstants{.bisections = m_bisections}, normals, recorder);
   }
 
   std::vector<CounterValue> counters() const override {
@@ -44,6 +47,7 @@ public:
 
 private:
   std::optional<Marcher> m_marcher;
+  MarchPipelines m_pipelines;
   std::uint32_t m_bisections = 0;
   std::uint64_t m_seed = 0;
   std::vector<gpu::MemoryItem> m_memory;

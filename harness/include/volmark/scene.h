@@ -19,14 +19,21 @@ enum class ShadingModel : std::uint8_t { none, lambert, phong, gooch, ggx };
 struct Shading {
   ShadingModel model = ShadingModel::lambert;
   glm::dvec3 surfaceColor{0.85, 0.82, 0.75}; ///< linear Rec.709; isosurfaces only
+  bool shadows = false; ///< the volume keeps light from itself; of a spotlight, and TechniqueInfo::shadows only
 };
 
-/// Directional light. `direction` points towards the light and is normalised.
+/// A headlight, a light infinitely far away, or a spotlight. `direction` points towards it and is normalised.
 struct Light {
-  bool headlight = true;         ///< the light comes from the eye; `direction` is ignored
-  glm::dvec3 direction{0, 0, 1}; ///< world space
+  bool headlight = true;         ///< the light comes from the eye; all but colour and ambient are ignored
+  glm::dvec3 direction{0, 0, 1}; ///< world space; of a spotlight, from the volume's centre
+  bool spot = false;             ///< its cone holds the volume's bounding sphere; it does not fall off
+  double distance = 3;           ///< spotlight: from the volume's centre, in radii of that sphere; > 1
   glm::dvec3 color{1.0};         ///< linear Rec.709
   double ambient = 0.1;          ///< share of the colour that needs no light, [0,1]
+
+  bool isSpot() const { return spot && !headlight; }
+  /// Of a spotlight, in world space.
+  glm::dvec3 position(const Grid& grid) const { return direction * distance * grid.boundingRadiusMm(); }
 };
 
 /// A technique gets this once. Scalars are normalised to [0,1] over `visualisationRange` and clamped.
@@ -35,6 +42,8 @@ struct Scene {
   std::shared_ptr<const Volume> volume;
   Range visualisationRange; ///< data's unit; minimum < maximum
   Shading shading;
+  /// What clipping planes cut off is drawn with it, if TechniqueInfo::functionBeyond; null: not drawn.
+  std::shared_ptr<const TransferFunction> functionBeyond;
 
   double normalised(double raw) const {
     return (raw - visualisationRange.minimum) / (visualisationRange.maximum - visualisationRange.minimum);

@@ -59,6 +59,8 @@ struct TechniqueInfo {
   bool needsGpu = true;      ///< false: no Vulkan device is created; draws to Frame::pictures
   int maximumViews = 2;
   std::vector<ShadingModel> shadings; ///< supported models, the first one is the default
+  bool shadows = false;               ///< draws Shading::shadows
+  bool functionBeyond = false;        ///< draws Scene::functionBeyond
   std::vector<ParameterDescriptor> parameters;
   std::vector<PassDescriptor> passes;     ///< of update and draw
   std::vector<PassDescriptor> generation; ///< of prepare

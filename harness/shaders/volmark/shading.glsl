@@ -67,11 +67,11 @@ vec3 shade(uint model, vec3 color, vec3 normal, vec3 toLight, vec3 toEye, vec3 l
   return diffuse;
 }
 
-// shade() with the frame's model and light; `toEye` is minus the ray's direction. A headlight shines from the
-// eye.
-vec3 shadeInFrame(FrameConstants constants, vec3 color, vec3 normal, vec3 toEye) {
-  vec3 toLight = constants.headlight != 0u ? toEye : constants.lightDirection;
-  return shade(constants.shadingModel, color, normal, toLight, toEye, constants.lightColor, constants.ambient);
+// Unit vector from a place (world) to the frame's light; `toEye` is minus the ray's direction. A headlight shines from
+// the eye.
+vec3 towardsLight(FrameConstants constants, vec3 world, vec3 toEye) {
+  if (constants.headlight != 0u) return toEye;
+  return constants.light.w == 0.0 ? constants.light.xyz : normalize(constants.light.xyz - world);
 }
 
 #endif

@@ -30,7 +30,7 @@ PUT(uint(frame.size.x)); PUT(uint(frame.size.y));
 PUT(frame.viewCount); PUT(frame.clippingPlaneCount);
 PUT(floatBitsToUint(frame.isovalue)); PUT(floatBitsToUint(frame.valueScale)); PUT(floatBitsToUint(frame.valueBias));
 PUT(floatBitsToUint(frame.smallestSpacing));
-PUT3(frame.lightDirection); PUT3(frame.lightColor);
+PUT4(frame.light); PUT3(frame.lightColor);
 PUT(floatBitsToUint(frame.ambient)); PUT(frame.headlight); PUT(frame.shadingModel);
 PUT3(frame.surfaceColor); PUT(frame.frameIndex); PUT(frame.seed);
 result[i] = word;
@@ -59,7 +59,7 @@ TEST_F(FrameConstantsTest, AreFilledFromSceneAndInputs) {
   inputs.views[1].frustum = {-0.1, 0.2, -0.3, 0.4};
   inputs.isovalue = 0.25;
   inputs.clippingPlanes = {{{0, 1, 0}, 2.5}};
-  inputs.light = {false, {0, 3, 4}, {0.5, 0.6, 0.7}, 0.2};
+  inputs.light = {.headlight = false, .direction = {0, 3, 4}, .color = glm::dvec3(0.5, 0.6, 0.7), .ambient = 0.2};
 
   Commands commands(device());
   FrameRecorder recorder(commands);
@@ -70,6 +70,10 @@ TEST_F(FrameConstantsTest, AreFilledFromSceneAndInputs) {
   Target target(device(), 32, 16, 2);
   const Frame frame{7, inputs, false, &target, nullptr};
   const FrameConstants constants = frameConstants(frame, scene, texture, 0x500000002);
+  FrameInputs bySpot = inputs;
+  bySpot.light = {.headlight = false, .direction = {0, 0.6, 0.8}, .spot = true, .distance = 2};
+  const Frame spotFrame{7, bySpot, false, &target, nullptr};
+  const FrameConstants spot = frameConstants(spotFrame, scene, texture, 0);
 
   EXPECT_EQ(constants.viewCount, 2u);
   EXPECT_EQ(constants.views[1].position, vec3(4, 5, 6));
@@ -82,7 +86,9 @@ TEST_F(FrameConstantsTest, AreFilledFromSceneAndInputs) {
   EXPECT_EQ(constants.size, ivec2(32, 16));
   EXPECT_EQ(constants.smallestSpacing, 0.5f);
   EXPECT_EQ(constants.isovalue, 0.25f);
-  EXPECT_LT(glm::distance(constants.lightDirection, vec3(0, 0.6f, 0.8f)), 1e-6f);
+  EXPECT_LT(glm::distance(constants.light, vec4(0, 0.6f, 0.8f, 0)), 1e-6f);
+  // Half the diagonal of 4 x 10 x 3.
+  EXPECT_LT(glm::distance(spot.light, vec4(vec3(0, 0.6f, 0.8f) * 5.5901699f * 2.0f, 1)), 1e-5f);
   EXPECT_EQ(constants.headlight, 0u);
   EXPECT_EQ(constants.shadingModel, 2u);
   EXPECT_EQ(constants.surfaceColor, vec3(0.1f, 0.2f, 0.3f));

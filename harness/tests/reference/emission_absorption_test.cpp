@@ -198,7 +198,8 @@ TEST(Volume, FormsConvergeToTheIntegralAndSlabsFaster) {
     scene.shading.model = model;
     FrameInputs inputs = inputsWith(kinky());
     inputs.views = {viewFrom({5, 4, 9}, {0, 1, 0}, 0.3)};
-    inputs.light = {false, glm::normalize(glm::dvec3(1, 2, 3)), glm::dvec3(1), 0.1};
+    inputs.light = {
+        .headlight = false, .direction = glm::normalize(glm::dvec3(1, 2, 3)), .color = glm::dvec3(1), .ambient = 0.1};
     VolumeSamples exact = samplesOf(Form::converged);
     exact.tolerance = 1e-5;
     const Picture truth = renderVolume(scene, inputs, 0, 20, 20, exact);
@@ -275,6 +276,42 @@ TEST(Volume, ShadingByHand) {
   }
 }
 
+TEST(Volume, LightFromTheEyesSideIsAbsorbedTwice) {
+  // What a depth sends back is weakened on both ways: the integral of c T^2 dtau, T = exp(-tau), is c (1 - T^2)/2.
+  Scene scene = sceneOf(column(9), rampAlong(column(9)));
+  scene.shading = {.model = ShadingModel::lambert, .shadows = true};
+  FrameInputs inputs = inputsWith(opacities({{0, 0.3}, {1, 0.3}}, {0.5, 0.25, 1}));
+  inputs.light = {.headlight = false, .direction = {0, 0, 1}, .spot = true, .distance = 4, .ambient = 0};
+  const double transmittance = std::pow(0.7, 8);
+  const glm::vec4 seen = volumeInTheMiddle(scene, inputs, samplesOf(Form::converged));
+  EXPECT_NEAR(seen.r, 0.5 * 0.5 * (1 - transmittance * transmittance), 1e-4);
+  EXPECT_NEAR(seen.a, 1 - transmittance, 1e-5);
+  // From behind, the light passes through all of the rest: c T_all at every depth, and Lambert's surfaces face away.
+  inputs.light.direction = {0, 0, -1};
+  EXPECT_NEAR(volumeInTheMiddle(scene, inputs, samplesOf(Form::converged)).r, 0, 1e-6);
+  // A plane that keeps the far half makes the way of the light shorter, too.
+  inputs.light.direction = {0, 0, 1};
+  inputs.clippingPlanes = {{{0, 0, -1}, 0}};
+  const double half = std::pow(0.7, 4);
+  EXPECT_NEAR(volumeInTheMiddle(scene, inputs, samplesOf(Form::converged)).r, 0.5 * 0.5 * (1 - half * half), 1e-4);
+}
+
+TEST(Volume, BeyondClippingPlanesTheOtherFunctionHolds) {
+  Scene scene = sceneOf(column(9), rampAlong(column(9)));
+  scene.functionBeyond = opacities({{0, 0.05}, {1, 0.05}}, {1, 0, 0});
+  FrameInputs inputs = inputsWith(opacities({{0, 0.3}, {1, 0.3}}, {0, 0, 1}));
+  inputs.clippingPlanes = {{{0, 0, 1}, -2}, {{0, 0, -1}, -2}}; // keep the middle half
+  const double thin = std::pow(0.95, 2);
+  const double thick = std::pow(0.7, 4);
+  const glm::vec4 seen = volumeInTheMiddle(scene, inputs, samplesOf(Form::converged));
+  EXPECT_NEAR(seen.a, 1 - thin * thick * thin, 1e-5);
+  EXPECT_NEAR(seen.r, (1 - thin) + thin * thick * (1 - thin), 1e-5);
+  EXPECT_NEAR(seen.b, thin * (1 - thick), 1e-5);
+  // Planes that keep nothing leave all of it to the other function.
+  inputs.clippingPlanes = {{{0, 0, 1}, 100}};
+  EXPECT_NEAR(volumeInTheMiddle(scene, inputs, samplesOf(Form::converged)).a, 1 - std::pow(0.95, 8), 1e-5);
+}
+
 TEST(Volume, SamplesWithoutGradientKeepTheirColour) {
   // A ramp of one per voxel, clamped to 1 from voxel 1 on: samples 0 and 1 have a gradient, 2 and 3 have none.
   const Grid grid{{2, 2, 5}, glm::dvec3(2)};
@@ -282,7 +319,7 @@ TEST(Volume, SamplesWithoutGradientKeepTheirColour) {
   scene.shading.model = ShadingModel::gooch;
   FrameInputs inputs = inputsWith(opacities({{0, 0.5}, {1, 0.5}}, glm::dvec3(0)));
   inputs.views = {viewFrom({0, 0, -100})};
-  inputs.light = {false, {0, 0, 1}, glm::dvec3(1), 0};
+  inputs.light = {.headlight = false, .direction = {0, 0, 1}, .color = glm::dvec3(1), .ambient = 0};
   // Lit from behind, black turns cool (blue 0.4) where there is a gradient.
   // The same for slabs, which are lit at their fronts, and for the integral, where the gradient ends at voxel 2.
   for (const Form form : kForms) {

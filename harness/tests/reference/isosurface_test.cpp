@@ -97,7 +97,8 @@ TEST(Isosurface, NormalsPointOutwards) {
   Scene scene = sceneOf(cube(81), sphere);
   scene.shading = {ShadingModel::lambert, glm::dvec3(1)};
   FrameInputs inputs = inputsOf(viewFrom({0, 0, 6}, {0, 1, 0}, 0.12));
-  inputs.light = {false, glm::normalize(glm::dvec3(1, 1, 1)), glm::dvec3(1), 0.0};
+  inputs.light = {
+      .headlight = false, .direction = glm::normalize(glm::dvec3(1, 1, 1)), .color = glm::dvec3(1), .ambient = 0.0};
   const Picture picture = renderIsosurface(scene, inputs, 0, 24, 24);
   for (int y = 0; y < 24; ++y)
     for (int x = 0; x < 24; ++x) {
@@ -122,7 +123,7 @@ TEST(Isosurface, StartingInsideHitsTheSideOfTheBox) {
   Scene scene = sceneOf(kCell, [](const glm::dvec3& p) { return 0.5 + p.z; });
   scene.shading = {ShadingModel::lambert, glm::dvec3(1)};
   FrameInputs inputs = inputsOf(viewFrom({0.1, 0.2, 10}));
-  inputs.light = {false, {0.6, 0, 0.8}, glm::dvec3(1), 0.0};
+  inputs.light = {.headlight = false, .direction = {0.6, 0, 0.8}, .color = glm::dvec3(1), .ambient = 0.0};
   const Seen seen = surfaceInTheMiddle(scene, inputs);
   EXPECT_NEAR(seen.distance, glm::length(glm::dvec3(0.1, 0.2, 10)) * 0.95, 1e-6);
   EXPECT_NEAR(seen.color.r, 0.8, 1e-6);
@@ -132,7 +133,7 @@ TEST(Isosurface, StartingInsideHitsTheClippingPlane) {
   Scene scene = sceneOf(cube(21), sphere);
   scene.shading = {ShadingModel::lambert, glm::dvec3(1)};
   FrameInputs inputs = inputsOf(viewFrom({0, 0, 6}));
-  inputs.light = {false, {0, 0, 1}, glm::dvec3(1), 0.0};
+  inputs.light = {.headlight = false, .direction = {0, 0, 1}, .color = glm::dvec3(1), .ambient = 0.0};
   inputs.clippingPlanes = {{{0, -1.2, -1.6}, -0.4}}; // keeps 0.6 y + 0.8 z <= 0.2, which cuts the axis at 0.25
   const Seen seen = surfaceInTheMiddle(scene, inputs);
   EXPECT_NEAR(seen.distance, 5.75, 1e-6);

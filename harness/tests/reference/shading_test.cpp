@@ -21,6 +21,14 @@ void expectColor(const glm::dvec3& found, const glm::dvec3& expected) {
   EXPECT_LT(glm::distance(found, expected), kTiny) << found.x << " " << found.y << " " << found.z;
 }
 
+Arriving arriving(const Light& light, const glm::dvec3& toEye) {
+  return arrivingAt(glm::dvec3(0), light, Grid{}, toEye);
+}
+
+Response respond(ShadingModel model, const Light& light, const glm::dvec3& normal, const glm::dvec3& toEye) {
+  return respond(model, arriving(light, toEye), normal, toEye);
+}
+
 } // namespace
 
 TEST(Shading, NoneKeepsTheColour) {
@@ -98,8 +106,8 @@ TEST(Shading, LambertKeepsWithinItsEnergy) {
 
 TEST(Shading, VanishingGradientsLeaveTheColour) {
   const Light light = lightFrom({1, 0, 0});
-  expectColor(respondToGradient(ShadingModel::phong, light, {0, 0, 0.9e-6}, kEye).lit(kColor), kColor);
-  expectColor(respondToGradient(ShadingModel::phong, light, {0, 0, 1.1e-6}, kEye).lit(kColor),
+  expectColor(respondToGradient(ShadingModel::phong, arriving(light, kEye), {0, 0, 0.9e-6}, kEye).lit(kColor), kColor);
+  expectColor(respondToGradient(ShadingModel::phong, arriving(light, kEye), {0, 0, 1.1e-6}, kEye).lit(kColor),
               respond(ShadingModel::phong, light, {0, 0, -1}, kEye).lit(kColor));
 }
 

@@ -52,8 +52,10 @@ json everything() {
     "volume": {"generator": {"dims": [9, 8, 7], "spacing_mm": [0.1, 0.2, 0.3], "type": "float32"}},
     "visualisation_range": [-3, 500.5], "framing": {"up": [0, 0, 3], "front": [1, -1, 0]},
     "isovalue": {"raw": 12.5}, "transfer_function": {"points": [{"value": 0.1, "color": [0.1, 0.2, 0.3], "opacity": 0.7}]},
-    "shading": {"model": "phong", "surface_color": [0.3, 0.6, 0.9]},
-    "light": {"headlight": false, "direction": [1, 2, 3], "color": [0.5, 1.5, 1], "ambient": 0.25},
+    "transfer_function_beyond": {"points": [{"value": 0.4, "color": [0.1, 0.2, 0.3], "opacity": 0.1}]},
+    "shading": {"model": "phong", "surface_color": [0.3, 0.6, 0.9], "shadows": true},
+    "light": {"headlight": false, "direction": [1, 2, 3], "spot": true, "distance": 2.5, "color": [0.5, 1.5, 1],
+              "ambient": 0.25},
     "resolution": [320, 200], "stereo": {"enabled": true, "interpupillary_distance_mm": 64.5},
     "camera": {"fov_degrees": 41.1, "distance": 333.3},
     "timeline": {"path": "keys", "keys": [{"azimuth_degrees": 10}, {"elevation_degrees": -5, "distance_scale": 0.7, "cut": true}],
@@ -154,6 +156,17 @@ TEST_F(PointTest, TechniquesLimitShadingAndViews) {
   EXPECT_THAT(refusal({{"technique.name", "integrate"}, {"stereo.enabled", true}}),
               HasSubstr("/stereo.enabled: found 2 views, technique \"integrate\" draws at most 1"));
   EXPECT_NO_THROW(make({{"stereo.enabled", true}}));
+  const json spot = {{"headlight", false}, {"direction", {0, 0, 1}}, {"spot", true}};
+  EXPECT_THAT(refusal({{"technique.name", "integrate"}, {"light", spot}, {"shading.shadows", true}}),
+              HasSubstr("/shading.shadows: found true, technique \"integrate\" draws no shadows"));
+  EXPECT_THAT(refusal({{"shading.shadows", true}}), HasSubstr("only a spotlight casts shadows"));
+  EXPECT_THAT(
+      refusal({{"technique.name", "integrate"},
+               {"timeline.clipping_planes", {{{"normal", {1, 0, 0}}, {"offset", 0}}}},
+               {"transfer_function_beyond", "soft"}}),
+      HasSubstr("/transfer_function_beyond: technique \"integrate\" does not draw what clipping planes cut off"));
+  EXPECT_THAT(refusal({{"light", {{"headlight", false}, {"direction", {0, 0, 1}}, {"spot", true}, {"distance", 1}}}}),
+              HasSubstr("/light/distance: found 1, allowed: number 1.1 to 100"));
 }
 
 TEST_F(PointTest, ASceneHasToBeGiven) {

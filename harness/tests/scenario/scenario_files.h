@@ -19,11 +19,14 @@ inline TechniqueFactory fakeTechnique(const std::string& name, Draws draws,
   factory.info.name = name;
   factory.info.draws = draws;
   factory.info.shadings = {ShadingModel::lambert, ShadingModel::phong};
+  factory.info.shadows = true;
+  factory.info.functionBeyond = true;
   factory.info.parameters = std::move(parameters);
   return factory;
 }
 
-/// march_a and march_b draw isosurfaces with different parameters; integrate draws volumes, one view, unshaded.
+/// march_a and march_b draw isosurfaces with different parameters; integrate draws volumes, one view, unshaded, no
+/// shadows.
 inline const TechniqueCatalogue& techniques() {
   static const TechniqueFactory a =
       fakeTechnique("march_a", Draws::isosurface,
@@ -37,6 +40,8 @@ inline const TechniqueCatalogue& techniques() {
         "integrate", Draws::volume, {ParameterDescriptor::number("step", 1, 0.01, 4, "voxel", "Step length.")});
     factory.info.shadings = {ShadingModel::none};
     factory.info.maximumViews = 1;
+    factory.info.shadows = false;
+    factory.info.functionBeyond = false;
     return factory;
   }();
   static const TechniqueCatalogue catalogue = [] {

@@ -26,7 +26,7 @@ const char* const kWhole = R"({
   "transfer_functions": {"z": {"points": [{"value": 0.1, "color": [1, 0.5, 0], "opacity": 0}, {"value": 0.1, "color": [1, 1, 1], "opacity": 1}]},
                          "a": {"points": [{"value": 0, "color": [0, 0, 0], "opacity": 0.25}]}},
   "framing": {"up": [0, 0, 2], "front": [0, -1, 0]},
-  "light": {"direction": [0, 3, 4], "color": [1, 0.9, 0.8], "ambient": 0.2}})";
+  "light": {"direction": [0, 3, 4], "color": [1, 0.9, 0.8], "spot": true, "distance": 2.5, "ambient": 0.2}})";
 
 class SceneFile : public testing::Test {
 protected:
@@ -83,6 +83,8 @@ TEST_F(SceneFile, ReadsEveryKey) {
   EXPECT_NEAR(glm::length(scene.light.direction - glm::dvec3(0, 0.6, 0.8)), 0, 1e-12);
   EXPECT_EQ(scene.light.color, glm::dvec3(1, 0.9, 0.8));
   EXPECT_EQ(scene.light.ambient, 0.2);
+  EXPECT_TRUE(scene.light.spot);
+  EXPECT_EQ(scene.light.distance, 2.5);
   EXPECT_EQ(scene.document.at("title"), "A title");
 }
 

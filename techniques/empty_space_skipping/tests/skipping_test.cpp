@@ -79,22 +79,28 @@ struct Case {
   ScalarType type;
   glm::dvec3 spacing;
   Values march;
+  bool lit = false;    ///< by a spotlight, with shadows
+  bool beyond = false; ///< draws what clipping planes cut off
 };
 
 const Case kCases[] = {
     {{33, 29, 31}, ScalarType::uint8, {1, 1, 1}, {{"step", 0.5}}},
-    {{65, 17, 3}, ScalarType::float32, {1, 1, 1}, {{"step", 0.7}, {"early_termination", false}}},
+    {{65, 17, 3}, ScalarType::float32, {1, 1, 1}, {{"step", 0.7}, {"early_termination", false}}, true},
     {{17, 17, 17}, ScalarType::uint16, {0.7, 1.3, 2.1}, {{"step", 1.0}, {"filtering", std::string("shader")}}},
-    {{40, 2, 23}, ScalarType::int16, {1, 1, 1}, {{"step", 0.31}}},
+    {{40, 2, 23}, ScalarType::int16, {1, 1, 1}, {{"step", 0.31}}, true, true},
     {{31, 33, 30},
      ScalarType::uint8,
      {1, 1, 1.5},
-     {{"step", 1.0}, {"transfer_function_kind", std::string("preintegrated")}}},
+     {{"step", 1.0}, {"transfer_function_kind", std::string("preintegrated")}},
+     false,
+     true},
     {{24, 35, 19},
      ScalarType::float32,
      {1.2, 1, 0.9},
-     {{"step", 3.5}, {"transfer_function_kind", std::string("preintegrated")}, {"early_termination", false}}},
-    {{29, 31, 27}, ScalarType::int8, {1, 1, 1}, {{"step", 0.8}, {"jitter", true}}},
+     {{"step", 3.5}, {"transfer_function_kind", std::string("preintegrated")}, {"early_termination", false}},
+     true,
+     true},
+    {{29, 31, 27}, ScalarType::int8, {1, 1, 1}, {{"step", 0.8}, {"jitter", true}}, false, true},
     {{1, 19, 20}, ScalarType::uint8, {1, 1, 1}, {{"step", 0.5}}},
 };
 
@@ -108,6 +114,12 @@ std::vector<Case> casesOf(const Method& method) {
   return {kCases[index % std::size(kCases)], kCases[(3 * index + 5) % std::size(kCases)]};
 }
 
+Light randomLight(Numbers& numbers, bool spot) {
+  const glm::dvec3 direction(numbers.between(-1, 1), numbers.between(-1, 1), numbers.between(0.1, 1));
+  return {
+      .headlight = !spot, .direction = glm::normalize(direction), .spot = spot, .distance = numbers.between(1.2, 5)};
+}
+
 class Skipping : public testing::TestWithParam<Method> {};
 
 TEST_P(Skipping, ChangesNoPixel) {
@@ -116,8 +128,12 @@ TEST_P(Skipping, ChangesNoPixel) {
   Numbers numbers(7);
   int skippedSomething = 0;
   for (const Case& c : casesOf(method)) {
-    const Scene scene = parts::makeScene(randomVolume(numbers, c.dims, c.type, c.spacing), ShadingModel::none);
+    Scene scene = parts::makeScene(randomVolume(numbers, c.dims, c.type, c.spacing),
+                                   c.lit ? ShadingModel::ggx : ShadingModel::none);
+    scene.shading.shadows = c.lit;
+    if (c.beyond) scene.functionBeyond = randomTransferFunction(numbers);
     Values march = c.march;
+    march.emplace_back("shadow_resolution", std::int64_t(48));
     march.emplace_back("preintegrated_size", std::int64_t(64));
     Values values = march;
     values.insert(values.end(), method.values.begin(), method.values.end());
@@ -131,7 +147,8 @@ TEST_P(Skipping, ChangesNoPixel) {
       const Grid& grid = scene.volume->grid();
       const FrameInputs inputs{.views = {randomView(numbers, grid, kWidth, kHeight)},
                                .transferFunction = randomTransferFunction(numbers),
-                               .clippingPlanes = randomPlanes(numbers, grid)};
+                               .clippingPlanes = randomPlanes(numbers, grid),
+                               .light = randomLight(numbers, c.lit)};
       const Drawn expected = plain.draw(inputs, true);
       const Drawn found = skipping.draw(inputs, true);
       const std::string where = fmt::format("{} x {} x {}, function {}", c.dims.x, c.dims.y, c.dims.z, i);
@@ -143,10 +160,12 @@ TEST_P(Skipping, ChangesNoPixel) {
     }
   }
   // Leaves as large as the volume hold something visible.
-  if (!method.tooLargeToSkip) EXPECT_GT(skippedSomething, 0);
+  if (!method.tooLargeToSkip) {
+    EXPECT_GT(skippedSomething, 0);
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Skipping, testing::ValuesIn(methods()), [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, Skipping, testing::ValuesIn(methods()), [](const auto& one) { return one.param.name; });
 
 TEST(BitfieldOctree, SlabsThatStepOverABlockAreDrawn) {
   // From 0 to 1 within a cell, and only what lies between is visible: samples on both sides are in empty blocks.

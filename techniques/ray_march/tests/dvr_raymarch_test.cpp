@@ -144,6 +144,89 @@ TEST(DvrRaymarch, ClippingPlanesAndOffAxisFrustaMatchTheReference) {
   EXPECT_LT(largestDifference(draw(scene, inputs, kind("preintegrated", 0.6)), slabs), kOneOf255);
 }
 
+TEST(DvrRaymarch, BeyondClippingPlanesTheOtherFunctionHolds) {
+  Scene scene = rippleScene(ShadingModel::lambert);
+  scene.functionBeyond = std::make_shared<TransferFunction>(
+      "beyond", std::vector<ControlPoint>{{0.3, {0.1, 0.9, 0.3}, 0.05}, {0.7, {0.9, 0.9, 0.1}, 0}});
+  FrameInputs inputs = inputsFor(scene, 0.4);
+  // Two that meet within the volume, and one that keeps nothing of many rays.
+  for (const std::vector<ClippingPlane>& planes :
+       {std::vector<ClippingPlane>{{glm::normalize(glm::dvec3(-0.6, -0.3, -1)), -4.0}, {{0, -1, 0}, -5.0}},
+        std::vector<ClippingPlane>{{{1, 0, 0}, 6.0}}, std::vector<ClippingPlane>{}}) {
+    inputs.clippingPlanes = planes;
+    const Picture points = referenceOf(scene, inputs, {.form = Form::point, .stepVoxels = 0.6});
+    const Picture slabs = referenceOf(scene, inputs, {.form = Form::preintegrated, .stepVoxels = 0.6});
+    EXPECT_LT(largestDifference(draw(scene, inputs, kind("post", 0.6)), points), kOneOf255) << planes.size();
+    EXPECT_LT(largestDifference(draw(scene, inputs, kind("preintegrated", 0.6)), slabs), kOneOf255) << planes.size();
+  }
+}
+
+FrameInputs inSpotlight(FrameInputs inputs, const glm::dvec3& direction) {
+  inputs.light = {.headlight = false, .direction = glm::normalize(direction), .spot = true, .ambient = 0};
+  return inputs;
+}
+
+TEST(DvrRaymarch, ASpotlightShadesAsTheReference) {
+  const Scene scene = rippleScene(ShadingModel::ggx);
+  const FrameInputs inputs = inSpotlight(inputsFor(scene), {0.3, 0.8, 0.6});
+  const Picture points = referenceOf(scene, inputs, {.form = Form::point, .stepVoxels = 0.7});
+  EXPECT_LT(largestDifference(draw(scene, inputs, kind("post", 0.7)), points), kOneOf255);
+}
+
+TEST(DvrRaymarch, ShadowsAreTheReferencesButForTheirFewDepths) {
+  Scene scene = rippleScene(ShadingModel::lambert);
+  const FrameInputs inputs = inSpotlight(inputsFor(scene, 0.15), {0.3, 0.8, 0.6});
+  for (const char* name : {"post", "preintegrated"}) {
+    const Form form = name == std::string("post") ? Form::point : Form::preintegrated;
+    Values values = kind(name, 0.5);
+    values.emplace_back("shadow_bias", 0.0);
+    values.emplace_back("shadow_resolution", std::int64_t(256));
+    scene.shading.shadows = false;
+    const Picture lit = draw(scene, inputs, values);
+    scene.shading.shadows = true;
+    const Picture expected = referenceOf(scene, inputs, {.form = form, .stepVoxels = 0.5});
+    const Picture found = draw(scene, inputs, values);
+    // The share that arrives is one of 0, 1/4 ... 1, at most 1/8 wrong, by chance either way; colours are at most 1.
+    EXPECT_LT(largestDifference(found, expected), 1.0 / 8) << name;
+    EXPECT_LT(meanDifference(found, expected), 0.1 * meanDifference(lit, expected)) << name;
+  }
+}
+
+TEST(DvrRaymarch, AnOpaquePlateKeepsTheLightFromWhatIsBelow) {
+  // A plate above the half of a floor, the light straight above, the eye aslant.
+  const auto plateAndFloor = [](const glm::dvec3& p) {
+    return p.y < 0.2 || (p.y > 0.7 && p.y < 0.8 && p.x < 0.5) ? 1.0 : 0.0;
+  };
+  Scene scene = makeScene(makeVolume(plateAndFloor, {48, 48, 48}, ScalarType::uint8), ShadingModel::lambert);
+  scene.shading.shadows = true;
+  FrameInputs inputs = inSpotlight(makeInputs(lookAtBox(scene.volume->grid(), 0, 30, kWidth, kHeight)), {0, 1, 0});
+  inputs.light.distance = 50;
+  inputs.transferFunction = std::make_shared<TransferFunction>(
+      "opaque", std::vector<ControlPoint>{{0.4, glm::dvec3(1), 0}, {0.5, glm::dvec3(1), 0.9}});
+  // Parallel rays nearly: what the eye sees of the floor, in the plate's shade and out of it.
+  const glm::dvec3 half = scene.volume->grid().boxMaximum();
+  const auto seenAt = [&](const glm::dvec3& world, const Picture& picture) {
+    const View& view = inputs.views[0];
+    const glm::dvec3 offset = world - view.pose.position;
+    const double depth = glm::dot(offset, view.pose.forward);
+    const double u = glm::dot(offset, view.pose.right) / depth;
+    const double v = glm::dot(offset, view.pose.up) / depth;
+    const Frustum& f = view.frustum;
+    const int x = static_cast<int>((u - f.left) / (f.right - f.left) * kWidth);
+    const int y = static_cast<int>((f.up - v) / (f.up - f.down) * kHeight);
+    return picture.color[picture.index(x, y)];
+  };
+  Values values = kind("post", 0.5);
+  values.emplace_back("shadow_resolution", std::int64_t(256));
+  const Picture picture = draw(scene, inputs, values);
+  const double floor = -0.6 * half.y;
+  const glm::vec4 shaded = seenAt({-0.5 * half.x, floor, 0.6 * half.z}, picture);
+  const glm::vec4 open = seenAt({0.5 * half.x, floor, 0.6 * half.z}, picture);
+  EXPECT_GT(shaded.a, 0.98f);
+  EXPECT_LT(shaded.r, 0.02f);
+  EXPECT_GT(open.r, 0.9f);
+}
+
 TEST(DvrRaymarch, EarlyTerminationChangesNoMoreThanItAllows) {
   const Scene scene = rippleScene();
   const FrameInputs inputs = inputsFor(scene, 0.7);

@@ -16,7 +16,6 @@ from .cells import TECHNIQUES, Measurements, generation_of
 from .evidence import (HELD, NOT_HELD, NOT_MEASURED, UNDECIDED, Quantity, all_of, at_least, at_most, most_of, time_ratio, within,
                        work_of, work_ratio)
 
-_BUILT = [c for c in published.CONFIGURATIONS if c not in published.NOT_BUILT]
 _SUPPORTS = {published.BITFIELD: "cells", published.BITFIELD_VOXELS: "voxels"}
 SAME_WITHIN = 1.02
 """Bitfield and min-max octree: 2 %."""
@@ -95,13 +94,13 @@ def ratio_case(table: Measurements, dataset: str, configuration: str, a: str, b:
 
 
 def _everywhere(table: Measurements, a: str, b: str, judge) -> list[Case]:
-    return [ratio_case(table, d, c, a, b, judge) for d in published.DATASETS for c in _BUILT]
+    return [ratio_case(table, d, c, a, b, judge) for d in published.DATASETS for c in published.CONFIGURATIONS]
 
 
 def distance_map_is_fastest(table: Measurements) -> Claim:
     methods = [*published.OCTREES, published.BITFIELD_VOXELS]
     cases = [ratio_case(table, d, c, "distance map", m, lambda q: at_most(q, 1.0))
-             for d in published.DATASETS for c in _BUILT for m in methods]
+             for d in published.DATASETS for c in published.CONFIGURATIONS for m in methods]
     return Claim("The distance map draws fastest, in all configurations.", "4.4", cases)
 
 
@@ -124,7 +123,7 @@ def bitfield_gains(table: Measurements, bitfield: str, dataset: str, configurati
 
 
 def minmax_loses_to_none(table: Measurements) -> Claim:
-    cells = [(d, c) for d in ("lungs", "head MRI") for c in _BUILT
+    cells = [(d, c) for d in ("lungs", "head MRI") for c in published.CONFIGURATIONS
              if published.time_ratio(d, c, "min-max octree", "none") > 1]
     return Claim("The min-max octree is slower than no skipping on lungs and head MRI.", "table 1",
                  [ratio_case(table, d, c, "min-max octree", "none", _slower) for d, c in cells],
@@ -137,7 +136,7 @@ def bitfield_loses_to_none(table: Measurements, bitfield: str) -> Claim:
         return _slower if loses else lambda q: at_most(q, 1.0)
 
     return Claim(f"The bitfield octree ({_SUPPORTS[bitfield]}) is slower than no skipping only on head MRI (Marching Only).", "table 1",
-                 [ratio_case(table, d, c, bitfield, "none", judge(d, c)) for d in published.DATASETS for c in _BUILT])
+                 [ratio_case(table, d, c, bitfield, "none", judge(d, c)) for d in published.DATASETS for c in published.CONFIGURATIONS])
 
 
 def _slower(quantity: Quantity) -> str:
@@ -241,7 +240,7 @@ def _least_work(results: list[PointResult], axis: str) -> list[str]:
 def slowest_percentile(table: Measurements) -> Claim:
     paper = published.SLOWEST_PERCENTILE_LONGER
     case = Case("mean over the table's points of low1_avg_ms / mean_ms", f"{1 + paper:.2f}")
-    points = [r for d in published.DATASETS for c in _BUILT for m in published.METHODS if (r := table.done(d, c, m)) is not None]
+    points = [r for d in published.DATASETS for c in published.CONFIGURATIONS for m in published.METHODS if (r := table.done(d, c, m)) is not None]
     if points:
         ratios = [r.statistics["low1_avg_ms"] / r.statistics["mean_ms"] for r in points]
         low, high = np.percentile(ratios, (5, 95))

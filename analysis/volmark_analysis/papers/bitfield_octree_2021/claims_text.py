@@ -20,8 +20,7 @@ def claims_markdown(claims: list[Claim]) -> str:
         verdicts = [c.verdict for c in claim.cases]
         summary.rows.append([str(number), claim.text, claim.section, claim.verdict, claim.work_verdict,
                              f"{verdicts.count('held')} of {len(verdicts)}", str(verdicts.count("not measured"))])
-    summary.notes = [_RULES, *(f"{text}." for text in KINDS.values()), "Samples and node tests are counted exactly: their ratio has no bounds.",
-                     "+ Lighting is not built yet: no claim is checked in it."]
+    summary.notes = [_RULES, *(f"{text}." for text in KINDS.values()), "Samples and node tests are counted exactly: their ratio has no bounds."]
     parts = ["# Claims of the bitfield-octree paper (2021)", "", to_markdown(summary)]
     for number, claim in enumerate(claims, 1):
         parts += [f"## {number}. {claim.text}", "", f"In time: {claim.verdict}." + (

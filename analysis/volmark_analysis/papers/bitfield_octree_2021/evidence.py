@@ -51,9 +51,10 @@ def time_ratio(a: PointResult, b: PointResult) -> Quantity:
 
 
 def work_of(result: PointResult) -> float | None:
-    """Samples and node tests of a frame, which are exact."""
-    samples = result.counters.get("samples")
-    return None if samples is None else samples + result.counters.get("node_tests", 0.0)
+    """Samples and node tests of a frame, also of the light's rays, which are exact."""
+    if "samples" not in result.counters:
+        return None
+    return sum(result.counters.get(name, 0.0) for name in ("samples", "node_tests", "shadow_samples", "shadow_node_tests"))
 
 
 def work_ratio(a: PointResult, b: PointResult) -> float | None:

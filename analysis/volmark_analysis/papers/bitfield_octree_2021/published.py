@@ -10,7 +10,6 @@ OCTREES = METHODS[2:]
 BITFIELD, BITFIELD_VOXELS = "bitfield octree", "bitfield octree, voxels"
 """With the bins of all trilinear values (which changes no pixel), and with those of the voxels alone, which is the paper's."""
 CONFIGURATIONS = ("marching only", "early exit", "shading", "lighting")
-NOT_BUILT = ("lighting",)
 TITLES = {"marching only": "Marching Only", "early exit": "+ Early Exit", "shading": "+ Shading", "lighting": "+ Lighting"}
 GENERATION = "generation"
 

@@ -67,8 +67,6 @@ def _dataset_text(dataset: str) -> str:
 def time_cell(table: Measurements, dataset: str, configuration: str, method: str) -> str:
     paper = f"paper {published.time_ms(dataset, configuration, method):.2f}"
     result = table.cells.get((dataset, configuration, method))
-    if configuration in published.NOT_BUILT:
-        return f"not built yet; {paper}"
     absent = _why_absent(result)
     if absent:
         return f"{absent}; {paper}"
@@ -83,8 +81,6 @@ def _why_absent(result: PointResult | None) -> str:
 
 def ratio_cell(table: Measurements, dataset: str, configuration: str, method: str) -> str:
     paper = f"paper {number_text(published.time_ratio(dataset, configuration, 'none', published.column_of(method)))}"
-    if configuration in published.NOT_BUILT:
-        return f"not built yet; {paper}"
     none, result = table.done(dataset, configuration, "none"), table.done(dataset, configuration, method)
     if none is None or result is None:
         return f"not measured; {paper}"
@@ -138,8 +134,6 @@ def _csv_row(table: Measurements, dataset: str, configuration: str, method: str)
     if method != "none" and (built := generation_of(table, dataset, method)) is not None:
         row |= {"generation_ms": built.value, "generation_low_ms": built.low, "generation_high_ms": built.high}
     result = table.cells.get((dataset, configuration, method))
-    if configuration in published.NOT_BUILT:
-        return row | {"status": "not built yet"}
     if result is None or not result.completed:
         return row | {"status": _why_absent(result)}
     return row | {"status": "completed"} | _measured_columns(table, result, dataset, configuration)

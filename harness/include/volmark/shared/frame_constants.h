@@ -39,7 +39,7 @@ struct FrameConstants {
   float valueScale; // sampled texel to normalised scalar
   float valueBias;
   float smallestSpacing; // length of "one voxel"
-  vec3 lightDirection;   // towards the light, world
+  vec4 light;            // world; w 0: towards it, w 1: its place
   vec3 lightColor;
   float ambient;
   uint headlight;
@@ -51,7 +51,7 @@ struct FrameConstants {
 
 #ifdef __cplusplus
 static_assert(sizeof(ViewConstants) == 64);
-static_assert(sizeof(FrameConstants) == 4 * 64 + 6 * 16 + 4 * 12 + 8 + 8 + 4 * 4 + 2 * 12 + 3 * 4 + 12 + 2 * 4);
+static_assert(sizeof(FrameConstants) == 4 * 64 + 6 * 16 + 4 * 12 + 8 + 8 + 4 * 4 + 16 + 12 + 3 * 4 + 12 + 2 * 4);
 } // namespace volmark::gpu
 #endif
 
