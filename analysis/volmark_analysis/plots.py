@@ -219,6 +219,7 @@ def draw_means(ax, panel: Panel, styles) -> None:
     means = [r.statistics["mean_ms"] for r in panel.results]
     logarithmic = max(means) > LOG_FROM_RATIO * min(means)
     left = 0.5 * min(means) if logarithmic else 0.0
+    reach = max(means)
     for y, r in enumerate(panel.results):
         ax.barh(y, means[y] - left, left=left, height=0.42, color=styles[id(r)].color, zorder=2)
         bounds = r.interval or r.spread
@@ -226,13 +227,14 @@ def draw_means(ax, panel: Panel, styles) -> None:
         if bounds is not None:
             ax.plot(bounds, (y, y), color=TEXT, lw=1.1, solid_capstyle="butt", marker="|", ms=5, zorder=3)
             end = max(end, bounds[1])
+        reach = max(reach, end)
         ax.annotate(f"{number_text(means[y])} ms, {error_text(r)}", (end, y), xytext=(5, 0),
                     textcoords="offset points", va="center", fontsize=8, color=TEXT)
     if logarithmic:
         ax.set_xscale("log")
-        ax.set_xlim(left, max(means) * (max(means) / min(means)) ** 0.5)
+        ax.set_xlim(left, reach * (reach / min(means)) ** 0.5)
     else:
-        ax.set_xlim(0, 1.42 * max(means))
+        ax.set_xlim(0, 1.5 * reach)  # room for the text beside the longest bar
     _bar_names(ax, panel)
     finish(ax, "frame time, ms" + (" (logarithmic)" if logarithmic else ""), "", grid="x")
 

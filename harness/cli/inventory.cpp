@@ -129,12 +129,13 @@ int describe(const std::string& name) {
   constexpr const char* draws[] = {"isosurface", "volume", "isosurface and volume"};
   fmt::print("{}: {}\n", info.name, info.summary);
   if (!info.paper.empty()) fmt::print("  paper    {}, {}\n", info.paper, info.section);
-  fmt::print(
-      "  family   {}\n  draws    {}\n  history  {}\n  runs on  {}\n  views    up to {}\n  shading  {}{}{}\n  layers   "
-      "{}\n",
-      entry.family, draws[static_cast<int>(info.draws)], historyText(info.history),
-      info.needsGpu ? "a Vulkan device" : "the host alone", info.maximumViews, shadingText(info),
-      info.shadows ? ", shadows" : "", info.functionBeyond ? ", beyond clipping planes" : "", layersText(info));
+  fmt::print("  family   {}\n  draws    {}\n  history  {}\n  runs on  {}\n  views    up to {}\n  shading  {}{}{}{}\n  "
+             "layers   "
+             "{}\n",
+             entry.family, draws[static_cast<int>(info.draws)], historyText(info.history),
+             info.needsGpu ? "a Vulkan device" : "the host alone", info.maximumViews, shadingText(info),
+             info.shadows ? ", shadows" : "", info.functionBeyond ? ", beyond clipping planes" : "",
+             info.segments ? ", segments" : "", layersText(info));
   fmt::print("\nparameters (technique.parameters.NAME):\n");
   for (const ParameterDescriptor& parameter : info.parameters)
     fmt::print("  {:<24} {}\n  {:<24}   default {}; {}\n", parameter.name, parameter.documentation, "",

@@ -23,6 +23,14 @@ struct Emission {
   const Medium& medium; // of what clipping planes keep
   const Medium* beyond; // of what they cut off; null: nothing
   double voxelMm;       // the length that opacity refers to
+
+  /// Whether a place belongs to a segment that is not drawn: that of the voxel nearest to it.
+  bool isHidden(const glm::dvec3& place) const {
+    if (inputs.hiddenSegments.none() || !scene.volume->labels()) return false;
+    const glm::ivec3 last = field.dims() - 1;
+    const glm::ivec3 voxel = glm::clamp(glm::ivec3(glm::floor(field.toVoxel(place) + 0.5)), glm::ivec3(0), last);
+    return inputs.hiddenSegments[static_cast<std::size_t>(scene.volume->labels()->value(voxel.x, voxel.y, voxel.z))];
+  }
 };
 
 /// A part of a path, and what it leads through.
@@ -101,7 +109,7 @@ void alongPoints(const Emission& emission, const Portion& portion, const VolumeS
   for (long i = first; place(i) < path.exit && !stopsEarly(samples, gathered); ++i) {
     const double t = place(i);
     const glm::dvec4 sample = portion.medium.evaluate(valueAt(emission, path, t));
-    if (sample.a <= 0) continue;
+    if (sample.a <= 0 || emission.isHidden(path.at(t))) continue;
     const double opacity = 1 - std::pow(1 - sample.a, samples.stepVoxels);
     gathered.add(lit(responseAt(emission, path, t), glm::dvec4(glm::dvec3(sample) * opacity, opacity)));
   }
@@ -126,7 +134,7 @@ void alongSlabs(const Emission& emission, const Portion& portion, const VolumeSa
     const double back = valueAt(emission, path, end);
     glm::dvec4 slab = portion.medium.slab(front, back, samples.stepVoxels);
     const double share = std::min((end - start) / step, 1.0);
-    if (slab.a > 0) {
+    if (slab.a > 0 && !emission.isHidden(path.at(start)) && !emission.isHidden(path.at(end))) {
       if (start == path.entry || end == path.exit) slab = shortened(slab, share);
       gathered.add(lit(responseAt(emission, path, start), slab));
     }
@@ -152,6 +160,15 @@ void cutAtBends(const Cubic& cubic, const std::vector<double>& bends, std::vecto
   std::sort(cuts.begin(), cuts.end());
 }
 
+/// Cuts [0,1] where the voxel changes that is nearest: half-way through a cell.
+void cutHalfWay(const CellSpan& span, std::vector<double>& cuts) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double place = (0.5 - span.from[axis]) / (span.to[axis] - span.from[axis]);
+    if (place > 0 && place < 1) cuts.push_back(place);
+  }
+  std::sort(cuts.begin(), cuts.end());
+}
+
 /// The part of a path in one cell, each piece between cuts as `count` slabs of equal length, lit at their middles.
 glm::dvec4 cellAsSlabs(const Emission& emission, const Portion& portion, const CellSpan& span, const Cubic& cubic,
                        const std::vector<double>& cuts, int count) {
@@ -167,6 +184,7 @@ glm::dvec4 cellAsSlabs(const Emission& emission, const Portion& portion, const C
       front = back;
       if (slab.a <= 0) continue;
       const double middle = span.start + (start + (i + 0.5) * share) * length;
+      if (emission.isHidden(portion.path.at(middle))) continue;
       gathered.add(lit(responseAt(emission, portion.path, middle), slab));
     }
     start = end;
@@ -195,6 +213,7 @@ void converged(const Emission& emission, const Portion& portion, double toleranc
     const Cubic cubic = cubicAlong(emission.field.corners(span.cell), span.from, span.to);
     if (portion.medium.isTransparent(cubic.lowerBound(), cubic.upperBound())) continue;
     cutAtBends(cubic, portion.medium.bends(), cuts);
+    if (emission.inputs.hiddenSegments.any()) cutHalfWay(span, cuts);
 
     // Halve the slabs until the cell changes by less than its share of the ray's tolerance.
     const double allowed = tolerance * (span.end - span.start) / (path.exit - path.entry);
@@ -221,11 +240,14 @@ double transmittanceOf(const Emission& emission, const Portion& portion) {
     const Cubic cubic = cubicAlong(emission.field.corners(span.cell), span.from, span.to);
     if (portion.medium.isTransparent(cubic.lowerBound(), cubic.upperBound())) continue;
     cutAtBends(cubic, portion.medium.bends(), cuts);
+    if (emission.inputs.hiddenSegments.any()) cutHalfWay(span, cuts);
     double start = 0;
     for (const double end : cuts) {
       const double share = (end - start) / kSlabs;
       const double voxels = share * (span.end - span.start) / emission.voxelMm;
-      for (int i = 0; i < kSlabs; ++i)
+      const double middle = span.start + 0.5 * (start + end) * (span.end - span.start);
+      const int slabs = emission.isHidden(portion.path.at(middle)) ? 0 : kSlabs;
+      for (int i = 0; i < slabs; ++i)
         transmittance *= 1 - portion.medium.slab(cubic(start + i * share), cubic(start + (i + 1) * share), voxels).a;
       start = end;
     }

@@ -31,6 +31,7 @@ struct VolumeSamples {
 
 /// With scene.shading.shadows, a sample is lit by what the volume lets through on the straight way from the spotlight,
 /// clipping planes included. With scene.functionBeyond, what clipping planes cut off has that transfer function.
+/// Samples, slabs (by their ends; converged, by their middles) of hidden segments are left out.
 /// Emission-absorption with opacity per voxel length (TransferFunction); premultiplied colours, `distance` stays
 /// infinite. Samples are shaded with scene.shading.model: at the sample, at a slab's front sample, or, converged,
 /// everywhere. Converged rays are cut at cell boundaries, at the scalar's extrema and where it meets a control point;

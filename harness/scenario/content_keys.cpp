@@ -188,6 +188,25 @@ bool bySpot(const PointSettings& s) {
   return s.light.isSpot();
 }
 
+PointKey hiddenSegments() {
+  return onlyIf(
+      [](const PointSettings& s) { return s.scene.labels.has_value(); },
+      plain(
+          "hidden_segments", "", "Labels of the scene's segments that are not drawn.",
+          {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 0}, {"maximum", kMaximumSegments - 1}}}},
+          [](const JsonValue& value, PointSettings& s) {
+            s.hiddenSegments.reset();
+            for (const JsonValue& label : value.array())
+              s.hiddenSegments.set(static_cast<std::size_t>(label.integer(0, kMaximumSegments - 1)));
+          },
+          [](const PointSettings& s) {
+            nlohmann::json labels = nlohmann::json::array();
+            for (std::size_t label = 0; label < s.hiddenSegments.size(); ++label)
+              if (s.hiddenSegments[label]) labels.push_back(label);
+            return labels;
+          }));
+}
+
 PointKey functionBeyond() {
   nlohmann::json schema = transferFunctionSchema();
   schema["anyOf"].push_back({{"type", "null"}});
@@ -239,6 +258,7 @@ std::vector<PointKey> contentKeys() {
   result.push_back(isovalue());
   result.push_back(transferFunction());
   result.push_back(functionBeyond());
+  result.push_back(hiddenSegments());
   result.push_back(derived(choice(
                                "shading.model", [](auto& s) -> auto& { return s.shading.model; },
                                std::vector<std::pair<std::string, ShadingModel>>{{"none", ShadingModel::none},

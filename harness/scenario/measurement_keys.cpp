@@ -68,10 +68,11 @@ std::vector<PointKey> measurementKeys() {
       integer(
           "pictures.count", [](auto& s) -> auto& { return s.pictures.count; }, 0, 1000,
           "Captured frames, spread evenly over the timeline."),
-      choice(
-          "pictures.reference", [](auto& s) -> auto& { return s.pictures.reference; },
-          std::vector<std::pair<std::string, std::string>>{{"cpu", "cpu"}, {"none", "none"}},
-          "What pictures are compared with."),
+      derived(choice(
+                  "pictures.reference", [](auto& s) -> auto& { return s.pictures.reference; },
+                  std::vector<std::pair<std::string, std::string>>{{"cpu", "cpu"}, {"none", "none"}},
+                  "What pictures are compared with."),
+              "cpu; none with shadows, where it takes minutes"),
       vector(
           "pictures.background", [](auto& s) -> auto& { return s.pictures.background; }, 0, 1,
           "Colour behind the picture for errors and sheets, linear Rec.709."),

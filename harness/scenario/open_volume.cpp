@@ -79,8 +79,10 @@ std::optional<fs::path> findVolumeFile(const SceneDescription& scene, const Data
   return std::nullopt;
 }
 
-std::shared_ptr<const Volume> openVolume(const SceneDescription& scene, const DataFolders& data,
-                                         std::uint64_t maximumBytes) {
+namespace {
+
+std::shared_ptr<const Volume> openScalars(const SceneDescription& scene, const DataFolders& data,
+                                          std::uint64_t maximumBytes) {
   if (const auto* generator = std::get_if<GeneratorSource>(&scene.source)) {
     const GeneratorSettings& settings = generator->settings;
     checkedVoxelBytes(fmt::format("scene {}", scene.name), {settings.dims, settings.spacingMm}, settings.type,
@@ -94,6 +96,29 @@ std::shared_ptr<const Volume> openVolume(const SceneDescription& scene, const Da
     return loadMesh(files.front(), mesh->settings, maximumBytes);
   if (std::holds_alternative<SeriesSource>(scene.source)) return loadTimeSeries(files, maximumBytes);
   return loadVolumeFile(files.front(), maximumBytes);
+}
+
+/// The labels as a scene of their own.
+SceneDescription sceneOfLabels(const SceneDescription& scene) {
+  SceneDescription labels = scene;
+  labels.labels.reset();
+  if (scene.labels->generator.empty()) {
+    labels.source = FileSource{scene.labels->file};
+  } else {
+    GeneratorSettings& settings = std::get<GeneratorSource>(labels.source).settings;
+    settings.name = scene.labels->generator;
+    settings.type = ScalarType::uint8;
+  }
+  return labels;
+}
+
+} // namespace
+
+std::shared_ptr<const Volume> openVolume(const SceneDescription& scene, const DataFolders& data,
+                                         std::uint64_t maximumBytes) {
+  auto volume = openScalars(scene, data, maximumBytes);
+  if (!scene.labels) return volume;
+  return std::make_shared<const Volume>(volume->withLabels(openScalars(sceneOfLabels(scene), data, maximumBytes)));
 }
 
 } // namespace volmark

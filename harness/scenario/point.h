@@ -91,6 +91,7 @@ struct PointSettings {
   std::optional<Isovalue> isovalue;
   std::shared_ptr<const TransferFunction> transferFunction; ///< resolved; never null
   std::shared_ptr<const TransferFunction> functionBeyond;   ///< of what clipping planes cut off; null: not drawn
+  std::bitset<kMaximumSegments> hiddenSegments;             ///< of the scene's labels
   Shading shading;
   Light light;
   int width = 512;

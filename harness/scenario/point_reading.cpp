@@ -104,6 +104,8 @@ void checkTechnique(const Given& given, const TechniqueInfo& technique, const Po
                fmt::format("found 2 views, technique \"{}\" draws at most {}", technique.name, technique.maximumViews));
   if (settings.shading.shadows && !technique.shadows)
     given.fail("shading.shadows", fmt::format("found true, technique \"{}\" draws no shadows", technique.name));
+  if (settings.hiddenSegments.any() && !technique.segments)
+    given.fail("hidden_segments", fmt::format("technique \"{}\" draws all segments; allowed: []", technique.name));
   if (settings.functionBeyond && !technique.functionBeyond)
     given.fail(
         "transfer_function_beyond",
@@ -111,6 +113,8 @@ void checkTechnique(const Given& given, const TechniqueInfo& technique, const Po
 }
 
 void checkCombination(const Given& given, const PointSettings& settings) {
+  if (settings.hiddenSegments.any() && !settings.scene.labels)
+    given.fail("hidden_segments", fmt::format("scene \"{}\" has no labels; allowed: []", settings.scene.name));
   if (settings.shading.shadows && !settings.light.isSpot())
     given.fail("shading.shadows",
                "found true, but only a spotlight casts shadows: \"light.spot\" true, \"light.headlight\" false");
@@ -143,6 +147,7 @@ PointSettings readSettings(const Overrides& overrides, const JsonValue& place, c
   for (const auto& [path, given_value] : overrides)
     if (const PointKey* key = findPointKey(path); key && key->read) key->read(given_value.place(), settings);
   settings.sceneName = scene.name;
+  if (settings.shading.shadows && !given.find("pictures.reference")) settings.pictures.reference = "none";
   checkTechnique(given, technique, settings);
   checkCombination(given, settings);
   return settings;

@@ -142,6 +142,26 @@ void parseVolume(const JsonValue& value, SceneDescription& scene) {
   if (generator) scene.source = parseGenerator(*generator);
 }
 
+LabelsSource parseLabels(const JsonValue& value, const SceneDescription& scene) {
+  JsonObject object(value);
+  const auto file = object.find("file");
+  const auto generator = object.find("generator");
+  object.refuseOthers();
+  if (file.has_value() == generator.has_value()) value.refuse("one of \"file\" and \"generator\"");
+  if (file) return {.file = file->text()};
+  const auto* source = std::get_if<GeneratorSource>(&scene.source);
+  if (!source) generator->fail("only the labels of a generated volume can be generated");
+  GeneratorSettings settings = source->settings;
+  settings.name = generator->choice(generatorNames());
+  settings.type = ScalarType::uint8;
+  try {
+    checkGenerator(settings);
+  } catch (const InputError& error) {
+    generator->fail(error.what());
+  }
+  return {.generator = settings.name};
+}
+
 /// scenes/fetch.py is who uses it all.
 void parseSource(const JsonValue& value, SceneDescription& scene) {
   JsonObject object(value);
@@ -248,6 +268,7 @@ Light parseLight(const JsonValue& value) {
   if (const auto color = object.find("color")) light.color = vectorOf(*color, 0, 100);
   if (const auto ambient = object.find("ambient")) light.ambient = ambient->number(0, 1);
   object.refuseOthers();
+  if (light.spot && light.headlight) value.fail("a spotlight needs a \"direction\" and no headlight");
   if (!light.headlight && !direction) value.fail("key \"direction\" is missing, without a headlight it is needed");
   return light;
 }
@@ -264,6 +285,7 @@ SceneDescription readScene(const std::filesystem::path& path) {
   object.at("volmark_scene").integer(1, 1);
   scene.title = object.at("title").text();
   parseVolume(object.at("volume"), scene);
+  if (const auto labels = object.find("labels")) scene.labels = parseLabels(*labels, scene);
   if (const auto source = object.find("source")) parseSource(*source, scene);
   if (const auto range = object.find("visualisation_range")) scene.visualisationRange = parseRange(*range);
   if (const auto isovalues = object.find("isovalues"))

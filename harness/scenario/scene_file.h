@@ -48,11 +48,18 @@ struct RawSource {
   RawDescription description;
 };
 
+/// Labels of the volume's segments: a file, or, beside a generated volume, another generator with the same settings.
+struct LabelsSource {
+  std::string file;
+  std::string generator; ///< if there is no file
+};
+
 struct SceneDescription {
   std::string name;
   std::string title;
   std::filesystem::path path; ///< of the scene file; empty for a scene made from a bare volume file
   std::variant<GeneratorSource, FileSource, SeriesSource, MeshSource, RawSource> source;
+  std::optional<LabelsSource> labels;
   std::string fetchHint;                   ///< how to get a missing file: "scenes/fetch.py cranium_ct", or empty
   std::string license;                     ///< empty if the scene file names none
   std::optional<Range> visualisationRange; ///< data's unit
@@ -83,8 +90,8 @@ Light parseLight(const JsonValue& value);
 /// A scene around a bare volume file: isovalue "middle" (normalised 0.5), transfer function "ramp".
 SceneDescription sceneForFile(const std::filesystem::path& path);
 
-/// Loads or generates the volume. Throws InputError: missing file (names the folders searched and the fetch
-/// hint), bad header, over `maximumBytes`.
+/// Loads or generates the volume, and its labels. Throws InputError: missing file (names the folders searched and the
+/// fetch hint), bad header, over `maximumBytes`.
 std::shared_ptr<const Volume> openVolume(const SceneDescription& scene, const DataFolders& data,
                                          std::uint64_t maximumBytes);
 

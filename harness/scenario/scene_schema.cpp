@@ -76,6 +76,14 @@ json volumeSchema() {
             object({{"mesh", mesh}}, {"mesh"}), object({{"generator", generatorSchema()}}, {"generator"})}}};
 }
 
+json labelsSchema() {
+  const json text = {{"type", "string"}, {"minLength", 1}};
+  return {{"description",
+           "Segments of the voxels, uint8 below 128: a file, or a generator that takes the volume's settings."},
+          {"oneOf",
+           {object({{"file", text}}, {"file"}), object({{"generator", {{"enum", generatorNames()}}}}, {"generator"})}}};
+}
+
 json sourceSchema() {
   json properties = json::object();
   for (const char* key : {"package", "package_member", "url", "license", "acknowledgement", "note"})
@@ -118,6 +126,7 @@ json sceneSchema() {
        {"volmark_scene", {{"const", 1}, {"description", "Version of the format."}}},
        {"title", text},
        {"volume", volumeSchema()},
+       {"labels", labelsSchema()},
        {"source", sourceSchema()},
        {"visualisation_range", range},
        {"isovalues", isovalues},

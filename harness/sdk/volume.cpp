@@ -160,6 +160,23 @@ std::span<const std::byte> Volume::voxels(int timeStep) const {
   return m_bytes.view().subspan(bytes * static_cast<std::size_t>(timeStep), bytes);
 }
 
+Volume Volume::withLabels(std::shared_ptr<const Volume> labels) const {
+  const glm::ivec3& dims = labels->grid().dims;
+  if (dims != m_grid.dims || labels->timeSteps() != 1)
+    throw InputError(fmt::format("{}: labels of {} x {} x {} voxels, {} time steps: allowed are {} x {} x {} and 1",
+                                 labels->name(), dims.x, dims.y, dims.z, labels->timeSteps(), m_grid.dims.x,
+                                 m_grid.dims.y, m_grid.dims.z));
+  if (labels->type() != ScalarType::uint8 || labels->dataRange().maximum >= kMaximumSegments)
+    throw InputError(fmt::format("{}: labels of type {} up to {}: allowed are uint8 and {}", labels->name(),
+                                 nameOf(labels->type()), labels->dataRange().maximum, kMaximumSegments - 1));
+  Volume result = *this;
+  const std::string both = m_identity + labels->identity();
+  const XXH128_hash_t hash = XXH3_128bits(both.data(), both.size());
+  result.m_identity = fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  result.m_labels = std::move(labels);
+  return result;
+}
+
 double Volume::value(int i, int j, int k, int timeStep) const {
   assert(i >= 0 && j >= 0 && k >= 0 && i < m_grid.dims.x && j < m_grid.dims.y && k < m_grid.dims.z);
   const std::size_t index = (static_cast<std::size_t>(k) * m_grid.dims.y + j) * m_grid.dims.x + i;

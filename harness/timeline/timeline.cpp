@@ -77,7 +77,8 @@ Timeline::Timeline(const PointSettings& settings, const Scene& scene)
     : m_settings(settings.timeline), m_camera(settings.camera), m_stereo(settings.stereo),
       m_framing(settings.scene.framing),
       m_frustum(Frustum::symmetric(settings.camera.verticalFovDegrees, settings.width, settings.height)),
-      m_timeSteps(scene.volume->timeSteps()), m_transferFunction(settings.transferFunction), m_light(settings.light) {
+      m_timeSteps(scene.volume->timeSteps()), m_transferFunction(settings.transferFunction), m_light(settings.light),
+      m_hiddenSegments(settings.hiddenSegments) {
   const Grid& grid = scene.volume->grid();
   // A volume of one voxel has no radius: look at it from a voxel's length.
   const double radius = std::max(grid.boundingRadiusMm(), 0.5 * grid.smallestSpacingMm());
@@ -134,6 +135,7 @@ FrameInputs Timeline::at(double phase) const {
   inputs.clippingPlanes = m_settings.clippingPlanes;
   inputs.timeStep = timeStepAt(phase);
   inputs.light = m_light;
+  inputs.hiddenSegments = m_hiddenSegments;
   return inputs;
 }
 
@@ -159,6 +161,7 @@ Changes Timeline::between(double previousPhase, double phase) const {
           .clippingPlanes = false,
           .timeStep = timeStepAt(previousPhase) != timeStepAt(phase),
           .light = false,
+          .segments = false,
           .cut = jumpsBetween(previousPhase, phase)};
 }
 

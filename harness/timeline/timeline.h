@@ -1,4 +1,4 @@
-// What each frame is given: camera, isovalue, transfer function, clipping planes, time step, light.
+// What each frame is given: camera, isovalue, transfer function, clipping planes, time step, light, segments.
 #pragma once
 
 #include "scenario/point.h"
@@ -39,6 +39,7 @@ private:
   int m_timeSteps = 1;
   std::shared_ptr<const TransferFunction> m_transferFunction;
   Light m_light;
+  std::bitset<kMaximumSegments> m_hiddenSegments;
 };
 
 /// The Scene that a technique is prepared with. Throws InputError for a volume of one value without a

@@ -62,6 +62,7 @@ std::string keyOf(const Scene& scene, const FrameInputs& inputs, int width, int 
     key.add(inputs.isovalue).add(scene.shading.surfaceColor);
   } else {
     key.add(scene.shading.shadows ? 1 : 0).add(*inputs.transferFunction);
+    if (inputs.hiddenSegments.any()) key.add(inputs.hiddenSegments.to_string());
     if (scene.functionBeyond) key.add(*scene.functionBeyond);
   }
   return key.digest();

@@ -142,8 +142,8 @@ void DistanceMap::build(gpu::Commands& commands, const gpu::SampledImage& volume
   commands.barrier(gpu::kComputeWrite, gpu::kComputeRead);
 }
 
-gpu::SampledImage DistanceMap::image() const {
-  return {m_distances.view(), m_sampler.handle(), VK_IMAGE_LAYOUT_GENERAL};
+std::vector<gpu::Resource> DistanceMap::resources() const {
+  return {gpu::SampledImage{m_distances.view(), m_sampler.handle(), VK_IMAGE_LAYOUT_GENERAL}};
 }
 
 SkippingConstants DistanceMap::constants(const VisibleScalars&, const VisibleScalars&) const {

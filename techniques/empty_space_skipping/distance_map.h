@@ -21,7 +21,7 @@ public:
 
   bool dependsOnTransferFunction() const override { return true; }
   void build(gpu::Commands& commands, const gpu::SampledImage& volume, const VisibleScalars& visible) override;
-  gpu::SampledImage image() const override;
+  std::vector<gpu::Resource> resources() const override;
   SkippingConstants constants(const VisibleScalars& kept, const VisibleScalars& beyond) const override;
 
   glm::ivec3 texels() const { return m_constants.blocks; }

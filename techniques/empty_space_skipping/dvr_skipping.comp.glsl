@@ -1,10 +1,12 @@
 // Emission and absorption, front to back, of those samples alone that a structure does not know to be transparent: the
 // ray marcher of Faludi et al. 2021, section 3.4, with each of the structures of its Table 1.
-// Macros: BITFIELD, MINMAX or BOOLEAN (octrees), EUCLIDEAN or CHEBYSHEV (distances).
+// Macros: BITFIELD, MINMAX or BOOLEAN (octrees), EUCLIDEAN or CHEBYSHEV (distances), BRICKS (ray queries).
 // One invocation is one pixel of one view (z); a workgroup is 8 x 8 pixels. Nothing runs after it.
 #version 460
 
-#if defined(EUCLIDEAN) || defined(CHEBYSHEV)
+#if defined(BRICKS)
+#include <empty_space_skipping/bricks.glsl>
+#elif defined(EUCLIDEAN) || defined(CHEBYSHEV)
 #include <empty_space_skipping/distance.glsl>
 #else
 #include <empty_space_skipping/octree.glsl>

@@ -5,4 +5,4 @@
 using namespace volmark::empty_space_skipping;
 
 VOLMARK_MODULE(empty_space_skipping, dvrBitfieldOctree(), dvrMinMaxOctree(), dvrBooleanOctree(), dvrDistanceMap(),
-               dvrChebyshevDistance())
+               dvrChebyshevDistance(), dvrRayQuery())

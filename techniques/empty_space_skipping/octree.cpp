@@ -90,6 +90,7 @@ VkFormat nodeFormat(const StructureSettings& settings, ScalarType type) {
     case 64: return VK_FORMAT_R32G32_UINT;
     default: return VK_FORMAT_R32G32B32A32_UINT;
     }
+  case StructureKind::labelOctree: return VK_FORMAT_R32G32B32A32_UINT;
   default: break;
   }
   return VK_FORMAT_R8_UINT;
@@ -118,7 +119,7 @@ Octree::Octree(gpu::Device& device, const Scene& scene, const gpu::VolumeTexture
       m_constants(buildConstants(scene, volume, settings)) {
   const VkFormat format = nodeFormat(settings, scene.volume->type());
   m_nodes = gpu::Image(
-      device, {.name = "octree",
+      device, {.name = settings.kind == StructureKind::labelOctree ? "label_octree" : "octree",
                .type = VK_IMAGE_TYPE_3D,
                .format = format,
                .extent = {static_cast<std::uint32_t>(m_shape.leaves.x), static_cast<std::uint32_t>(m_shape.leaves.y),
@@ -157,8 +158,8 @@ void Octree::build(gpu::Commands& commands, const gpu::SampledImage& volume, con
   commands.barrier(gpu::kComputeWrite, gpu::kComputeRead);
 }
 
-gpu::SampledImage Octree::image() const {
-  return {m_nodes.view(), m_sampler.handle(), VK_IMAGE_LAYOUT_GENERAL};
+std::vector<gpu::Resource> Octree::resources() const {
+  return {gpu::SampledImage{m_nodes.view(), m_sampler.handle(), VK_IMAGE_LAYOUT_GENERAL}};
 }
 
 SkippingConstants Octree::constants(const VisibleScalars& kept, const VisibleScalars& beyond) const {

@@ -12,7 +12,14 @@ layout(set = 0, binding = kBindingStructure) uniform sampler3D octree;
 layout(set = 0, binding = kBindingStructure) uniform usampler3D octree;
 #endif
 
+#ifdef LABEL_OCTREE_BINDING
+layout(set = 0, binding = LABEL_OCTREE_BINDING) uniform usampler3D labelOctree;
+#endif
+
 bool isEmpty(Classification by, ivec3 node, int level) {
+#ifdef LABEL_OCTREE_BINDING
+  if ((texelFetch(labelOctree, node, level) & skipping.shown) == uvec4(0)) return true;
+#endif
 #if defined(MINMAX)
   vec2 range = texelFetch(octree, node, level).xy;
   return !visible(by, range.x, range.y);

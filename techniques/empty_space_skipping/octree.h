@@ -31,7 +31,7 @@ public:
 
   bool dependsOnTransferFunction() const override { return m_settings.kind == StructureKind::booleanOctree; }
   void build(gpu::Commands& commands, const gpu::SampledImage& volume, const VisibleScalars& visible) override;
-  gpu::SampledImage image() const override;
+  std::vector<gpu::Resource> resources() const override;
   SkippingConstants constants(const VisibleScalars& kept, const VisibleScalars& beyond) const override;
 
   const OctreeShape& shape() const { return m_shape; }

@@ -1,5 +1,5 @@
 // Leaves of an octree, from the voxels of their blocks (Faludi et al. 2021, section 3.3).
-// Macros: NODE_FORMAT, the image's format; BITFIELD, MINMAX or BOOLEAN.
+// Macros: NODE_FORMAT, the image's format; BITFIELD, MINMAX, BOOLEAN, or LABELS (section 5).
 // One invocation (one workgroup, if cooperative) is one leaf. octree_parents.comp.glsl runs next.
 #version 460
 
@@ -19,11 +19,20 @@ uint lowBits(int count) {
   return count <= 0 ? 0u : count >= 32 ? 0xffffffffu : (1u << uint(count)) - 1u;
 }
 
-#ifdef BITFIELD
+#if defined(BITFIELD) || defined(LABELS)
 shared uint bitsOfGroup[4];
 
-// The bins of a block's voxels (section 3.1).
-uvec4 binsOfVoxels(ivec3 block) {
+int bitOf(float texel) {
+#ifdef LABELS
+  return int(rawValue(texel));
+#else
+  return binOf(scalarOf(texel));
+#endif
+}
+
+// The bins of a block's voxels (section 3.1), or their labels: with blocks of cells, those of all voxels that are nearest
+// to a place in them.
+uvec4 bitsOfVoxels(ivec3 block) {
   ivec3 low, high;
   voxelsOf(block, low, high);
   if (kCooperative && gl_LocalInvocationIndex < 4u) bitsOfGroup[gl_LocalInvocationIndex] = 0u;
@@ -34,7 +43,7 @@ uvec4 binsOfVoxels(ivec3 block) {
   for (int z = first.z; z <= high.z; z += stride)
     for (int y = first.y; y <= high.y; y += stride)
       for (int x = first.x; x <= high.x; x += stride) {
-        int bin = binOf(scalarOf(texelFetch(volume, ivec3(x, y, z), 0).r));
+        int bin = bitOf(texelFetch(volume, ivec3(x, y, z), 0).r);
         bits[bin >> 5] |= 1u << uint(bin & 31);
       }
   if (kCooperative) {
@@ -45,7 +54,9 @@ uvec4 binsOfVoxels(ivec3 block) {
   }
   return bits;
 }
+#endif
 
+#ifdef BITFIELD
 // Every bin that a trilinear value in the block can lie in. A cell's are those from its lowest to its highest corner;
 // neighbouring cells share corners, so that a block's are all from its lowest to its highest voxel.
 uvec4 binsOfCells(ivec3 block) {
@@ -63,8 +74,12 @@ void main() {
   ivec3 node = blockOfInvocation();
   bool isBlock = all(lessThan(node, build.blocks));
   bool writes = all(lessThan(node, build.nodes)) && (!kCooperative || gl_LocalInvocationIndex == 0u);
-#if defined(BITFIELD)
-  uvec4 bits = build.voxelBlocks != 0 ? binsOfVoxels(node) : binsOfCells(node);
+#if defined(BITFIELD) || defined(LABELS)
+#ifdef LABELS
+  uvec4 bits = bitsOfVoxels(node);
+#else
+  uvec4 bits = build.voxelBlocks != 0 ? bitsOfVoxels(node) : binsOfCells(node);
+#endif
   if (writes) imageStore(nodes, node, isBlock ? bits : uvec4(0));
 #elif defined(MINMAX)
   vec2 range = rangeOf(node);

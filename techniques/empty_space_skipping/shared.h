@@ -9,23 +9,33 @@
 namespace volmark::empty_space_skipping {
 using glm::ivec3;
 using glm::uvec4;
+using glm::vec3;
 using uint = std::uint32_t;
 using parts::kBindingOwn;
 using parts::kIdOwn;
 #endif
 
 // Drawing: bindings after the table, specialisation constants.
-const int kBindingStructure = kBindingOwn + 1;
-const int kBindingSkipping = kBindingOwn + 2;
-const int kIdBidirectional = kIdOwn;   // octrees: go on at the level of the last question
-const int kIdVoxelBlocks = kIdOwn + 1; // blocks hold voxels (the paper) instead of cells
-const int kIdSharedSlabs = kIdOwn + 2; // pre-integration: a slab between two empty nodes can't show
+const int kBindingSkipping = kBindingOwn + 1;
+const int kBindingStructure = kBindingOwn + 2;
+const int kBindingBoxes = kBindingStructure + 1; // of bricks alone
+const int kIdBidirectional = kIdOwn;             // octrees: go on at the level of the last question
+const int kIdVoxelBlocks = kIdOwn + 1;           // blocks hold voxels (the paper) instead of cells
+const int kIdSharedSlabs = kIdOwn + 2;           // pre-integration: a slab between two empty nodes can't show
 
 struct SkippingConstants {
   uvec4 mask;       // bitfield octree: bins that the transfer function shows
   uvec4 maskBeyond; // the same of what clipping planes cut off
+  uvec4 shown;      // segments that are not hidden
   int blockShift;   // log2 of the voxels along a leaf's (texel's) edge
   int initialLevel; // octrees: highest level asked; 0 are the leaves
+};
+
+// A brick's cells in voxel coordinates, larger by a margin on each side. As VkAabbPositionsKHR.
+const float kBoxMargin = 0.01f;
+struct BrickBox {
+  vec3 low;
+  vec3 high;
 };
 
 // Building: bindings.
@@ -63,7 +73,8 @@ struct DistanceConstants {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(SkippingConstants) == 40);
+static_assert(sizeof(SkippingConstants) == 56);
+static_assert(sizeof(BrickBox) == 24);
 static_assert(sizeof(BuildConstants) == 64);
 static_assert(sizeof(DistanceConstants) == 32);
 } // namespace volmark::empty_space_skipping

@@ -11,11 +11,11 @@ namespace {
 using Kind = StructureKind;
 
 bool isOctree(Kind kind) {
-  return kind != Kind::distanceMap && kind != Kind::chebyshevMap;
+  return kind == Kind::bitfieldOctree || kind == Kind::minMaxOctree || kind == Kind::booleanOctree;
 }
 
 int blockEdgeOf(Kind kind, const ParameterValues& parameters) {
-  return static_cast<int>(parameters.integer(isOctree(kind) ? "leaf" : "texel"));
+  return static_cast<int>(parameters.integer(isOctree(kind) ? "leaf" : kind == Kind::bricks ? "brick" : "texel"));
 }
 
 StructureSettings settingsOf(Kind kind, const ParameterValues& parameters) {
@@ -26,6 +26,16 @@ StructureSettings settingsOf(Kind kind, const ParameterValues& parameters) {
   }
   if (isOctree(kind) && parameters.integer("initial_level") >= 0)
     settings.skippedLevels = static_cast<int>(parameters.integer("initial_level"));
+  return settings;
+}
+
+bool hasLabelOctree(Kind kind, const Volume& volume) {
+  return kind == Kind::bitfieldOctree && volume.labels() != nullptr;
+}
+
+/// Of the octree of labels beside another one: the same blocks and levels.
+StructureSettings labelSettings(StructureSettings settings) {
+  settings.kind = Kind::labelOctree;
   return settings;
 }
 
@@ -46,7 +56,8 @@ private:
   Kind m_kind;
   std::optional<parts::VolumeMarcher> m_marcher;
   std::unique_ptr<Structure> m_structure;
-  VisibleScalars m_visible; ///< on either side of the clipping planes
+  std::unique_ptr<Structure> m_labelOctree; ///< bitfield octree, of volumes with labels
+  VisibleScalars m_visible;                 ///< on either side of the clipping planes
   SkippingConstants m_constants{};
   std::optional<int> m_builtStep; ///< time step that the structure stands for
   std::uint64_t m_seed = 0;
@@ -58,25 +69,43 @@ void SkippingTechnique::prepare(const Preparation& preparation, Recorder& record
   const StructureSettings settings = settingsOf(m_kind, parameters);
   const std::vector<gpu::MemoryItem> before = preparation.device->ledger().items();
 
-  parts::VolumeMarcherDescription description{
-      .shader = "empty_space_skipping/dvr_skipping.comp.glsl",
-      .macros = {{macroOf(m_kind), "1"}},
-      .own = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
+  parts::VolumeMarcherDescription description{.shader = "empty_space_skipping/dvr_skipping.comp.glsl",
+                                              .macros = {{macroOf(m_kind), "1"}},
+                                              .own = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}};
+  const std::vector<VkDescriptorType> bindings = structureBindings(m_kind);
+  description.own.insert(description.own.end(), bindings.begin(), bindings.end());
   description.variant.set(kIdBidirectional, isOctree(m_kind) && parameters.text("traversal") == "bidirectional")
       .set(kIdVoxelBlocks, settings.voxelBlocks)
       // A step is in voxels of the smallest spacing: it is as long at most along any axis, so that samples next to each
       // other lie in one block or in two that touch.
       .set(kIdSharedSlabs, parameters.number("step") <= settings.blockEdge);
+  const bool asksLabels = hasLabelOctree(m_kind, *preparation.scene.volume);
+  if (asksLabels) {
+    const std::size_t binding = kBindingSkipping + description.own.size();
+    description.macros.emplace_back("LABEL_OCTREE_BINDING", std::to_string(binding));
+    description.own.push_back(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+  }
   m_marcher.emplace(preparation, description, recorder);
   {
     const Pass pass = recorder.hostPass("structure_pipelines");
     m_structure = makeStructure(*preparation.device, preparation.scene, m_marcher->volume(), settings);
+    if (asksLabels)
+      m_labelOctree = makeStructure(*preparation.device, parts::sceneOfLabels(preparation.scene), *m_marcher->labels(),
+                                    labelSettings(settings));
   }
   m_memory = parts::memoryAdded(before, preparation.device->ledger().items());
   if (!m_structure->dependsOnTransferFunction()) build(0, recorder);
+  if (m_labelOctree) {
+    const Pass pass = recorder.pass("build_label_octree");
+    m_labelOctree->build(recorder.gpu(), m_marcher->labels()->at(0), m_visible);
+  }
 }
 
 void SkippingTechnique::build(int timeStep, Recorder& recorder) {
+  if (m_kind == Kind::bricks) {
+    const Pass pass = recorder.hostPass("choose_bricks");
+    m_structure->prepareBuild(timeStep, m_visible);
+  }
   const Pass pass = recorder.pass("build_structure");
   m_structure->build(recorder.gpu(), m_marcher->volume().at(timeStep), m_visible);
   m_builtStep = timeStep;
@@ -97,7 +126,12 @@ void SkippingTechnique::update(const Changes& changes, const FrameInputs& inputs
 }
 
 void SkippingTechnique::draw(const Frame& frame, Recorder& recorder) {
-  const gpu::Resource resources[] = {m_structure->image(), recorder.gpu().constants(m_constants)};
+  SkippingConstants constants = m_constants;
+  constants.shown = ~parts::bitsOf(frame.inputs.hiddenSegments);
+  std::vector<gpu::Resource> resources = {recorder.gpu().constants(constants)};
+  for (const gpu::Resource& resource : m_structure->resources())
+    resources.push_back(resource);
+  if (m_labelOctree) resources.push_back(m_labelOctree->resources().front());
   m_marcher->draw(frame, m_seed, resources, recorder);
 }
 
@@ -114,6 +148,10 @@ std::vector<CounterValue> SkippingTechnique::counters() const {
 std::vector<ParameterDescriptor> parametersOf(Kind kind) {
   std::vector<ParameterDescriptor> parameters = parts::emissionParameters();
   const std::vector<std::int64_t> edges = {2, 4, 8, 16, 32, 64};
+  if (kind == Kind::bricks) {
+    parameters.push_back(ParameterDescriptor::oneOf("brick", 8, edges, "voxel", "Edge of the bricks."));
+    return parameters;
+  }
   if (!isOctree(kind)) {
     parameters.push_back(ParameterDescriptor::oneOf(
         "texel", 4, edges, "voxel", "Edge of the map's texels; 4 is a quarter of the volume's resolution."));
@@ -139,6 +177,8 @@ std::vector<ParameterDescriptor> parametersOf(Kind kind) {
 std::vector<PassDescriptor> passesOf(Kind kind) {
   std::vector<PassDescriptor> passes = parts::emissionPasses();
   passes.push_back({"build_mask", "What the transfer function shows, on the host, when it has changed."});
+  if (kind == Kind::bricks)
+    passes.push_back({"choose_bricks", "Bricks that show, on the host, before the structure is built."});
   passes.push_back(
       {"build_structure", kind == Kind::bitfieldOctree || kind == Kind::minMaxOctree
                               ? "The octree, when the time step has changed."
@@ -151,13 +191,17 @@ std::vector<PassDescriptor> generationOf(Kind kind) {
   passes.push_back({"structure_pipelines", "Pipelines and memory of the structure."});
   if (kind == Kind::bitfieldOctree || kind == Kind::minMaxOctree)
     passes.push_back({"build_structure", "The octree from the volume."});
+  if (kind == Kind::bitfieldOctree)
+    passes.push_back({"build_label_octree", "The octree of labels, of scenes with them."});
   return passes;
 }
 
 TechniqueInfo describe(Kind kind, const char* name, const char* summary, const char* section) {
   std::vector<CounterDescriptor> counters = parts::emissionCounters();
   counters.push_back({"node_tests", CounterKind::perDevice,
-                      isOctree(kind) ? "Nodes of the octree that rays asked." : "Texels of the map that rays asked."});
+                      isOctree(kind)         ? "Nodes of the octree that rays asked."
+                      : kind == Kind::bricks ? "Ray queries; boxes that one meets are not counted."
+                                             : "Texels of the map that rays asked."});
   counters.push_back({"shadow_node_tests", CounterKind::perDevice, "The same of rays of the light."});
   return {.name = name,
           .summary = summary,
@@ -169,6 +213,7 @@ TechniqueInfo describe(Kind kind, const char* name, const char* summary, const c
           .shadings = parts::emissionShadings(),
           .shadows = true,
           .functionBeyond = true,
+          .segments = true,
           .parameters = parametersOf(kind),
           .passes = passesOf(kind),
           .generation = generationOf(kind),
@@ -184,7 +229,10 @@ template <Kind kind>
 std::optional<std::string> whyUnsupported(const Scene& scene, const ParameterValues& parameters, const OutputSize& size,
                                           const gpu::Device* device) {
   if (auto why = parts::whyEmissionUnsupported(scene, parameters, size, device)) return why;
-  return whyStructureUnsupported(settingsOf(kind, parameters), *scene.volume, *device);
+  const StructureSettings settings = settingsOf(kind, parameters);
+  if (auto why = whyStructureUnsupported(settings, *scene.volume, *device)) return why;
+  if (!hasLabelOctree(kind, *scene.volume)) return std::nullopt;
+  return whyStructureUnsupported(labelSettings(settings), *scene.volume->labels(), *device);
 }
 
 template <Kind kind> TechniqueFactory factory(const char* name, const char* summary, const char* section) {
@@ -216,6 +264,11 @@ TechniqueFactory dvrDistanceMap() {
   return factory<Kind::distanceMap>("dvr_distance_map",
                                     "Leaps by the Euclidean distance to what the transfer function shows.",
                                     "4.4, column \"Distance Map\" of table 1");
+}
+
+TechniqueFactory dvrRayQuery() {
+  return factory<Kind::bricks>("dvr_ray_query", "Asks the device's ray queries for the next brick that is visible.",
+                               "none: beyond the paper; hardware traversal of boxes");
 }
 
 TechniqueFactory dvrChebyshevDistance() {

@@ -11,5 +11,6 @@ TechniqueFactory dvrMinMaxOctree();
 TechniqueFactory dvrBooleanOctree();
 TechniqueFactory dvrDistanceMap();
 TechniqueFactory dvrChebyshevDistance();
+TechniqueFactory dvrRayQuery();
 
 } // namespace volmark::empty_space_skipping

@@ -1,5 +1,6 @@
 #include "structure.h"
 
+#include "brick_boxes.h"
 #include "distance_map.h"
 #include "octree.h"
 
@@ -9,6 +10,7 @@ std::unique_ptr<Structure> makeStructure(gpu::Device& device, const Scene& scene
                                          const StructureSettings& settings) {
   if (settings.kind == StructureKind::distanceMap || settings.kind == StructureKind::chebyshevMap)
     return std::make_unique<DistanceMap>(device, scene, volume, settings);
+  if (settings.kind == StructureKind::bricks) return std::make_unique<BrickBoxes>(device, scene, settings);
   return std::make_unique<Octree>(device, scene, volume, settings);
 }
 
@@ -16,7 +18,14 @@ std::optional<std::string> whyStructureUnsupported(const StructureSettings& sett
                                                    const gpu::Device& device) {
   if (settings.kind == StructureKind::distanceMap || settings.kind == StructureKind::chebyshevMap)
     return whyDistanceMapUnsupported(settings, volume, device);
+  if (settings.kind == StructureKind::bricks) return whyBrickBoxesUnsupported(settings, volume, device);
   return whyOctreeUnsupported(settings, volume, device);
+}
+
+std::vector<VkDescriptorType> structureBindings(StructureKind kind) {
+  if (kind == StructureKind::bricks)
+    return {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
+  return {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
 }
 
 const char* macroOf(StructureKind kind) {
@@ -26,6 +35,8 @@ const char* macroOf(StructureKind kind) {
   case StructureKind::booleanOctree: return "BOOLEAN";
   case StructureKind::distanceMap: return "EUCLIDEAN";
   case StructureKind::chebyshevMap: return "CHEBYSHEV";
+  case StructureKind::bricks: return "BRICKS";
+  case StructureKind::labelOctree: return "LABELS";
   }
   return "";
 }

@@ -21,6 +21,8 @@ enum class StructureKind : std::uint8_t {
   booleanOctree,  ///< whether the transfer function shows any of it
   distanceMap,    ///< Euclidean distance to what it shows
   chebyshevMap,   ///< the same in octants, by the maximum norm
+  bricks,         ///< boxes of occupied bricks, for ray queries
+  labelOctree,    ///< which segments a node holds (section 5); asked beside a bitfield octree
 };
 
 /// Parameters, checked.
@@ -38,10 +40,12 @@ public:
 
   /// Whether build() uses what is visible; if not, one build lasts as long as the volume.
   virtual bool dependsOnTransferFunction() const = 0;
+  /// The host's part of a build, if it has one: before build().
+  virtual void prepareBuild(int /*timeStep*/, const VisibleScalars& /*visible*/) {}
   /// Records all of it; what rays read is visible to compute shaders afterwards.
   virtual void build(gpu::Commands& commands, const gpu::SampledImage& volume, const VisibleScalars& visible) = 0;
-  /// What rays read, in VK_IMAGE_LAYOUT_GENERAL.
-  virtual gpu::SampledImage image() const = 0;
+  /// What rays read, of the types of structureBindings().
+  virtual std::vector<gpu::Resource> resources() const = 0;
   /// For the ray marcher; cheap, and all that a bitfield octree needs of a new transfer function. `kept` and `beyond`:
   /// what shows on either side of clipping planes.
   virtual SkippingConstants constants(const VisibleScalars& kept, const VisibleScalars& beyond) const = 0;
@@ -54,6 +58,9 @@ std::unique_ptr<Structure> makeStructure(gpu::Device& device, const Scene& scene
 /// Why settings don't fit a volume (one sentence), or nothing.
 std::optional<std::string> whyStructureUnsupported(const StructureSettings& settings, const Volume& volume,
                                                    const gpu::Device& device);
+
+/// From kBindingStructure on.
+std::vector<VkDescriptorType> structureBindings(StructureKind kind);
 
 /// The macro that dvr_skipping.comp.glsl and the builders know a structure by.
 const char* macroOf(StructureKind kind);

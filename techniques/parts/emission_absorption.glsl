@@ -1,7 +1,7 @@
 // Emission and absorption along a path, front to back, in parts: what every direct volume renderer shares. A technique
 // decides which parts of a ray it visits, and calls accumulate() for them, front to back:
 //   beginRay(); for each portion: beginPortion(), accumulateBeginning(), accumulate() ...; finishRay().
-// Macros: PREINTEGRATED. BEYOND_BINDING: what clipping planes cut off is drawn, too, by the table bound there.
+// Macros: PREINTEGRATED. LABELS_BINDING: the labels of segments are bound there, some may be hidden. BEYOND_BINDING: what clipping planes cut off is drawn, too, by the table bound there.
 // SHADOWS_BINDING: samples look up the opacity shadow map bound there. SHADOW_MAP_BINDING: the rays are the light's, and
 // write that map instead of a picture.
 #ifndef PARTS_EMISSION_ABSORPTION_GLSL
@@ -28,6 +28,9 @@ layout(set = 0, binding = BEYOND_BINDING) uniform TABLE_SAMPLER tableBeyond;
 #else
 #define LOOK_UP(by, coordinate) textureLod(table, coordinate, 0.0)
 #endif
+#ifdef LABELS_BINDING
+layout(set = 0, binding = LABELS_BINDING) uniform sampler3D labels;
+#endif
 #ifdef SHADOW_MAP_BINDING
 layout(set = 0, binding = SHADOW_MAP_BINDING, rgba32f) uniform writeonly image2D shadowImage;
 #endif
@@ -48,6 +51,18 @@ struct Accumulation {
 #endif
 };
 
+// Whether a place belongs to a hidden segment: that of the voxel nearest to it.
+bool isHidden(VolumeGrid grid, Path path, float place) {
+#ifdef LABELS_BINDING
+  precise vec3 position = path.base + place * path.delta;
+  vec3 voxel = floor(kShaderFiltering ? position + 0.5 : position * vec3(grid.dims));
+  uint label = uint(round(255.0 * texelFetch(labels, clamp(ivec3(voxel), ivec3(0), grid.dims - 1), 0).r));
+  return (march.hidden[label >> 5u] >> (label & 31u) & 1u) != 0u;
+#else
+  return false;
+#endif
+}
+
 #ifdef SHADOW_MAP_BINDING
 
 // The map's texels hold the distances from the light, in world units, at which a ray's transmittance falls to this.
@@ -60,7 +75,7 @@ bool goesOn(float transmittance) {
   return transmittance > transmittanceOfDepth(kShadowDepths - 1);
 }
 
-void add(VolumeGrid grid, Path path, vec4 sampled, float place, bool there, inout Accumulation sum) {
+void addShown(VolumeGrid grid, Path path, vec4 sampled, float place, bool there, inout Accumulation sum) {
   bool counts = there && goesOn(sum.transmittance);
   if (kCounting && counts) {
     ++sum.samples;
@@ -81,7 +96,7 @@ bool goesOn(float transmittance) {
 }
 
 // Adds what a sample at `place` (a slab from there on) contributes, if it is there and the ray has not ended.
-void add(VolumeGrid grid, Path path, vec4 sampled, float place, bool there, inout Accumulation sum) {
+void addShown(VolumeGrid grid, Path path, vec4 sampled, float place, bool there, inout Accumulation sum) {
   bool counts = there && goesOn(sum.transmittance);
   float weight = counts ? sum.transmittance * sampled.a : 0.0;
   if (kCounting && counts) {
@@ -104,6 +119,15 @@ void add(VolumeGrid grid, Path path, vec4 sampled, float place, bool there, inou
 }
 
 #endif
+
+// The same, if it is of no hidden segment. A slab ends at `back`.
+void add(VolumeGrid grid, Path path, vec4 sampled, float place, float back, bool there, inout Accumulation sum) {
+  if (sampled.a > 0.0 && isHidden(grid, path, place)) sampled.a = 0.0;
+#ifdef PREINTEGRATED
+  if (sampled.a > 0.0 && isHidden(grid, path, back)) sampled.a = 0.0;
+#endif
+  addShown(grid, path, sampled, place, there, sum);
+}
 
 // What the transfer function says of texel values.
 struct Classification {
@@ -211,10 +235,10 @@ void accumulate(VolumeGrid grid, Path path, Classification by, int first, int en
       vec4 sampleB = classify(by, b);
       vec4 sampleC = classify(by, c);
       vec4 sampleD = classify(by, d);
-      add(grid, path, sampleA, place, true, sum);
-      add(grid, path, sampleB, place + 1.0, i + 1 < end, sum);
-      add(grid, path, sampleC, place + 2.0, i + 2 < end, sum);
-      add(grid, path, sampleD, place + 3.0, i + 3 < end, sum);
+      add(grid, path, sampleA, place, place, true, sum);
+      add(grid, path, sampleB, place + 1.0, place, i + 1 < end, sum);
+      add(grid, path, sampleC, place + 2.0, place, i + 2 < end, sum);
+      add(grid, path, sampleD, place + 3.0, place, i + 3 < end, sum);
     } else if (kCounting) {
       sum.samples += uint(min(kBlock, end - i));
     }
@@ -243,7 +267,7 @@ void accumulateBeginning(VolumeGrid grid, Path path, Classification by, inout Ac
   float front = texelAt(grid, path, path.first);
   float back = texelAt(grid, path, place);
   if (kCounting) ++sum.samples;
-  add(grid, path, cutSlab(classify(by, front, back), share), path.first, true, sum);
+  add(grid, path, cutSlab(classify(by, front, back), share), path.first, place, true, sum);
 }
 
 // Slabs first <= i < end (Engel, Kraus, Ertl 2001), the last one of the ray up to the exit. The sample at the back of one
@@ -270,10 +294,10 @@ void accumulate(VolumeGrid grid, Path path, Classification by, int first, int en
         slabC = cutSlab(slabC, clamp(rest - 2.0, 0.0, 1.0));
         slabD = cutSlab(slabD, clamp(rest - 3.0, 0.0, 1.0));
       }
-      add(grid, path, slabA, place, true, sum);
-      add(grid, path, slabB, place + 1.0, i + 1 < end, sum);
-      add(grid, path, slabC, place + 2.0, i + 2 < end, sum);
-      add(grid, path, slabD, place + 3.0, i + 3 < end, sum);
+      add(grid, path, slabA, place, min(place + 1.0, path.places), true, sum);
+      add(grid, path, slabB, place + 1.0, min(place + 2.0, path.places), i + 1 < end, sum);
+      add(grid, path, slabC, place + 2.0, min(place + 3.0, path.places), i + 2 < end, sum);
+      add(grid, path, slabD, place + 3.0, min(place + 4.0, path.places), i + 3 < end, sum);
     } else if (kCounting) {
       sum.samples += uint(min(kBlock, end - i));
     }

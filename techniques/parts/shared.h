@@ -7,6 +7,7 @@
 
 #include <cstdint>
 namespace volmark::parts {
+using glm::uvec4;
 using glm::vec3;
 using uint = std::uint32_t;
 #endif
@@ -64,10 +65,11 @@ struct MarchConstants {
   float shadowTangent; // from its middle to its sides
   float shadowBias;    // world units
   int shadowSize;      // texels along each side
+  uvec4 hidden;        // segments, a bit each
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(MarchConstants) == 88);
+static_assert(sizeof(MarchConstants) == 104);
 } // namespace volmark::parts
 #endif
 

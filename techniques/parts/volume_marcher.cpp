@@ -12,6 +12,17 @@ bool asksForPreintegration(const ParameterValues& parameters) {
 
 } // namespace
 
+Scene sceneOfLabels(const Scene& scene) {
+  return {.name = scene.name, .volume = scene.volume->labels(), .visualisationRange = {0, 255}};
+}
+
+uvec4 bitsOf(const std::bitset<kMaximumSegments>& segments) {
+  uvec4 bits(0);
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    if (segments[i]) bits[static_cast<int>(i / 32)] |= 1u << (i % 32);
+  return bits;
+}
+
 void VolumeMarcher::makePipelines(const Preparation& preparation, const VolumeMarcherDescription& description) {
   MarcherDescription common{.shader = {.path = description.shader, .macros = description.macros},
                             .variant = description.variant,
@@ -23,6 +34,7 @@ void VolumeMarcher::makePipelines(const Preparation& preparation, const VolumeMa
     one.shader.macros.emplace_back(macro, std::to_string(kBindingOwn + static_cast<int>(one.own.size())));
     one.own.push_back(type);
   };
+  if (m_labels) bind(common, "LABELS_BINDING", VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
   if (m_beyond) bind(common, "BEYOND_BINDING", VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
   MarcherDescription picture = common;
   if (m_shadows) {
@@ -41,6 +53,10 @@ VolumeMarcher::VolumeMarcher(const Preparation& preparation, const VolumeMarcher
       m_shadowBias(preparation.parameters.number("shadow_bias")), m_marcher(preparation, recorder),
       m_scene(&preparation.scene), m_kept(makeTable(*preparation.device, "transfer_function")) {
   const Scene& scene = preparation.scene;
+  if (scene.volume->labels()) {
+    // Texels are fetched: nothing is filtered.
+    m_labels.emplace(*preparation.device, sceneOfLabels(scene), gpu::Filtering::shader, recorder);
+  }
   if (scene.functionBeyond) m_beyond = makeTable(*preparation.device, "transfer_function_beyond");
   // Unshaded colours need no light.
   if (scene.shading.shadows && scene.shading.model != ShadingModel::none)
@@ -102,9 +118,11 @@ void VolumeMarcher::draw(const Frame& frame, std::uint64_t seed, std::span<const
   };
   std::vector<gpu::Resource> resources = {tableOf(m_kept)};
   resources.insert(resources.end(), own.begin(), own.end());
+  if (m_labels) resources.emplace_back(m_labels->at(0));
   if (m_beyond) resources.emplace_back(tableOf(*m_beyond));
   m_marcher.beginFrame(frame, recorder);
   MarchConstants constants = m_constants;
+  constants.hidden = bitsOf(frame.inputs.hiddenSegments);
   if (m_shadows) {
     m_shadows->describe(frame.inputs.light, m_scene->volume->grid(), m_shadowBias, constants);
     drawShadowMap(frame, resources, constants, recorder);

@@ -21,6 +21,12 @@ struct VolumeMarcherDescription {
   std::vector<VkDescriptorType> own{};                       ///< bindings after the table
 };
 
+/// The labels of a scene's volume as a scene of their own: scalars are labels / 255.
+Scene sceneOfLabels(const Scene& scene);
+
+/// A bit each.
+uvec4 bitsOf(const std::bitset<kMaximumSegments>& segments);
+
 /// A transfer function as rays read it, on host and device.
 struct TableOnGpu {
   TransferTable table;
@@ -40,6 +46,8 @@ public:
   void draw(const Frame& frame, std::uint64_t seed, std::span<const gpu::Resource> own, Recorder& recorder) const;
 
   const gpu::VolumeTexture& volume() const { return m_marcher.volume(); }
+  /// uint8; absent if the volume has none.
+  const std::optional<gpu::VolumeTexture>& labels() const { return m_labels; }
   /// What the shader reads, after update().
   const TransferTable& table() const { return m_kept.table; }
   /// The same of what clipping planes cut off; null if that is not drawn.
@@ -63,6 +71,7 @@ private:
   double m_shadowBias; ///< voxels
   Marcher m_marcher;
   const Scene* m_scene;
+  std::optional<gpu::VolumeTexture> m_labels;
   TableOnGpu m_kept;
   std::optional<TableOnGpu> m_beyond;
   gpu::Sampler m_tableSampler;

@@ -41,6 +41,7 @@ TechniqueInfo describe() {
           .shadings = parts::emissionShadings(),
           .shadows = true,
           .functionBeyond = true,
+          .segments = true,
           .parameters = parts::emissionParameters(),
           .passes = parts::emissionPasses(),
           .generation = parts::emissionGeneration(),

@@ -5,6 +5,7 @@
 #include "volmark/view.h"
 #include "volmark/volume.h"
 
+#include <bitset>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -65,6 +66,9 @@ struct FrameInputs {
   std::vector<ClippingPlane> clippingPlanes;                ///< at most kMaximumClippingPlanes
   int timeStep = 0;
   Light light;
+  /// Segments of Volume::labels() that are not drawn, if TechniqueInfo::segments. A sample belongs to the segment of
+  /// the voxel that is nearest to it; a slab is drawn only if both its ends are in segments that are.
+  std::bitset<kMaximumSegments> hiddenSegments;
 };
 
 /// What differs from the previous frame. After reset() everything counts as changed.
@@ -75,6 +79,7 @@ struct Changes {
   bool clippingPlanes = true;
   bool timeStep = true;
   bool light = true;
+  bool segments = true;
   bool cut = true; ///< the camera jumped: temporal prediction is pointless
 };
 

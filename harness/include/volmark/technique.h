@@ -61,6 +61,7 @@ struct TechniqueInfo {
   std::vector<ShadingModel> shadings; ///< supported models, the first one is the default
   bool shadows = false;               ///< draws Shading::shadows
   bool functionBeyond = false;        ///< draws Scene::functionBeyond
+  bool segments = false;              ///< heeds FrameInputs::hiddenSegments
   std::vector<ParameterDescriptor> parameters;
   std::vector<PassDescriptor> passes;     ///< of update and draw
   std::vector<PassDescriptor> generation; ///< of prepare

@@ -62,6 +62,9 @@ private:
   std::span<const std::byte> m_view;
 };
 
+/// Labels of segments are below this.
+inline constexpr int kMaximumSegments = 128;
+
 /// Immutable after construction, shared between threads. Voxels of float32 volumes are finite.
 class Volume {
 public:
@@ -77,14 +80,19 @@ public:
   int timeSteps() const { return m_timeSteps; }
   /// Smallest and largest voxel over all time steps, in the data's unit.
   Range dataRange() const { return m_dataRange; }
-  /// Hex XXH3-128 of type, dims, spacing, time steps and voxels: the data's identity in results.
+  /// Hex XXH3-128 of type, dims, spacing, time steps, voxels and labels: the data's identity in results.
   const std::string& identity() const { return m_identity; }
   const std::vector<std::string>& notes() const { return m_notes; }
+  /// Which segment each voxel belongs to: uint8 of the same dims, below kMaximumSegments; null if there are none.
+  const std::shared_ptr<const Volume>& labels() const { return m_labels; }
 
   /// One time step: voxelCount * sizeOf(type) bytes.
   std::span<const std::byte> voxels(int timeStep = 0) const;
   /// One voxel in the data's unit. Indices must be inside.
   double value(int i, int j, int k, int timeStep = 0) const;
+
+  /// The same voxels with labels. Throws InputError if `labels` is no such volume.
+  Volume withLabels(std::shared_ptr<const Volume> labels) const;
 
 private:
   std::string m_name;
@@ -95,6 +103,7 @@ private:
   std::vector<std::string> m_notes;
   Range m_dataRange;
   std::string m_identity;
+  std::shared_ptr<const Volume> m_labels;
 };
 
 } // namespace volmark

@@ -312,6 +312,25 @@ TEST(Volume, BeyondClippingPlanesTheOtherFunctionHolds) {
   EXPECT_NEAR(volumeInTheMiddle(scene, inputs, samplesOf(Form::converged)).a, 1 - std::pow(0.95, 8), 1e-5);
 }
 
+TEST(Volume, HiddenSegmentsAreLeftOut) {
+  // Nine voxels along the ray, labels 0 to 8: hidden ones take away what is nearest to them, half a cell each way.
+  const Grid grid = column(9);
+  Scene scene = sceneOf(grid, rampAlong(grid));
+  std::vector<std::byte> labels;
+  for (int z = 0; z < grid.dims.z; ++z)
+    for (int i = 0; i < grid.dims.x * grid.dims.y; ++i)
+      labels.push_back(static_cast<std::byte>(z));
+  scene.volume = std::make_shared<const Volume>(
+      scene.volume->withLabels(std::make_shared<const Volume>("labels", grid, ScalarType::uint8, std::move(labels))));
+  FrameInputs inputs = inputsWith(opacities({{0, 0.3}, {1, 0.3}}));
+  inputs.hiddenSegments.set(2).set(3).set(8);
+  // Two cells and the half one at the end.
+  EXPECT_NEAR(volumeInTheMiddle(scene, inputs, samplesOf(Form::converged)).a, 1 - std::pow(0.7, 8 - 2.5), 1e-5);
+  inputs.hiddenSegments.set();
+  for (const Form form : kForms)
+    EXPECT_EQ(volumeInTheMiddle(scene, inputs, samplesOf(form)), glm::vec4(0));
+}
+
 TEST(Volume, SamplesWithoutGradientKeepTheirColour) {
   // A ramp of one per voxel, clamped to 1 from voxel 1 on: samples 0 and 1 have a gradient, 2 and 3 have none.
   const Grid grid{{2, 2, 5}, glm::dvec3(2)};

@@ -169,6 +169,21 @@ TEST_F(PointTest, TechniquesLimitShadingAndViews) {
               HasSubstr("/light/distance: found 1, allowed: number 1.1 to 100"));
 }
 
+TEST_F(PointTest, WithShadowsTheSlowReferenceHasToBeAskedFor) {
+  const json lit = {{"light", {{"headlight", false}, {"direction", {0, 0, 1}}, {"spot", true}}},
+                    {"shading.shadows", true}};
+  json asked = lit;
+  asked["pictures.reference"] = "cpu";
+  EXPECT_EQ(configOf({})["pictures"]["reference"], "cpu");
+  EXPECT_EQ(configOf(lit)["pictures"]["reference"], "none");
+  EXPECT_EQ(configOf(asked)["pictures"]["reference"], "cpu");
+}
+
+TEST_F(PointTest, ScenesWithoutLabelsHaveNothingToHide) {
+  EXPECT_THAT(refusal({{"hidden_segments", {1}}}), HasSubstr("/hidden_segments: scene \"blob\" has no labels"));
+  EXPECT_THAT(refusal({{"hidden_segments", {128}}}), HasSubstr("found 128, allowed: integer 0 to 127"));
+}
+
 TEST_F(PointTest, ASceneHasToBeGiven) {
   EXPECT_THAT(refusal({{"scene", nullptr}}), HasSubstr("command line: key \"scene\" is missing"));
   EXPECT_NO_THROW(make({{"scene", "bare"}}));

@@ -21,6 +21,7 @@ inline TechniqueFactory fakeTechnique(const std::string& name, Draws draws,
   factory.info.shadings = {ShadingModel::lambert, ShadingModel::phong};
   factory.info.shadows = true;
   factory.info.functionBeyond = true;
+  factory.info.segments = true;
   factory.info.parameters = std::move(parameters);
   return factory;
 }

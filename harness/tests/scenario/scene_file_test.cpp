@@ -141,6 +141,10 @@ TEST_F(SceneFile, RefusesWhatItDoesNotKnow) {
   expectRefused(R"({"framing": {"up": [0, 0, 0]}})", {"/framing/up", "direction"});
   expectRefused(R"({"light": {"ambient": 2}})", {"/light/ambient", "found 2"});
   expectRefused(R"({"light": {"direction": null, "headlight": false}})", {"/light", "\"direction\" is missing"});
+  expectRefused(R"({"light": {"direction": null, "headlight": null, "spot": true}})", {"/light", "a spotlight needs"});
+  expectRefused(R"({"light": {"distance": 1}})", {"/light/distance", "found 1"});
+  expectRefused(R"({"labels": {}})", {"/labels", "one of \"file\" and \"generator\""});
+  expectRefused(R"({"labels": {"generator": "phantom_labels"}})", {"/labels/generator", "generated volume"});
 }
 
 TEST_F(SceneFile, RefusesWrongTransferFunctions) {
@@ -184,6 +188,30 @@ TEST_F(SceneFile, TimeStepsOfGeneratorsCountAgainstMemory) {
     {"name": "blast_wave", "dims": [4, 5, 6], "parameters": {"time_steps": 3}}}})");
   EXPECT_EQ(openVolume(scene, {}, 360)->timeSteps(), 3);
   expectError([&] { openVolume(scene, {}, 359); }, {"scene scene", "3 time steps (360 bytes), allowed: 359 bytes"});
+}
+
+TEST_F(SceneFile, LabelsAreGeneratedOrRead) {
+  const auto labelled = [&](const std::string& labels) {
+    return read(R"({"volmark_scene": 1, "title": "t", "volume": {"generator":
+      {"name": "phantom", "dims": [6, 5, 4], "type": "float32"}}, "labels": )" +
+                labels + "}");
+  };
+  const auto volume = openVolume(labelled(R"({"generator": "phantom_labels"})"), {}, kNoLimit);
+  ASSERT_TRUE(volume->labels());
+  EXPECT_EQ(volume->labels()->grid().dims, glm::ivec3(6, 5, 4));
+  EXPECT_EQ(volume->labels()->type(), ScalarType::uint8);
+
+  const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: raw\nsizes: ";
+  const SceneDescription byFile = labelled(R"({"file": "labels.nrrd"})");
+  expectError([&] { openVolume(byFile, {}, kNoLimit); }, {"there is no labels.nrrd"});
+  write("labels.nrrd", header + "6 5 4\n\n" + std::string(120, '\x7f'));
+  const auto read = openVolume(byFile, {}, kNoLimit);
+  EXPECT_EQ(read->labels()->value(3, 2, 1), 127);
+  EXPECT_NE(read->identity(), volume->identity());
+  write("labels.nrrd", header + "6 5 4\n\n" + std::string(120, '\x80'));
+  expectError([&] { openVolume(byFile, {}, kNoLimit); }, {"labels of type uint8 up to 128", "uint8 and 127"});
+  write("labels.nrrd", header + "5 6 4\n\n" + std::string(120, '\1'));
+  expectError([&] { openVolume(byFile, {}, kNoLimit); }, {"labels of 5 x 6 x 4 voxels", "6 x 5 x 4"});
 }
 
 TEST_F(SceneFile, FilesAreLookedForBesideTheSceneThenInOrder) {

@@ -38,6 +38,29 @@ std::shared_ptr<const Volume> randomVolume(Numbers& numbers, glm::ivec3 dims, Sc
       dims, type, spacing);
 }
 
+std::shared_ptr<const Volume> randomLabels(Numbers& numbers, glm::ivec3 dims, glm::dvec3 spacing) {
+  const int patches = numbers.integer(2, 5); // along each axis
+  std::vector<std::byte> labels(static_cast<std::size_t>(patches) * patches * patches);
+  for (std::byte& label : labels)
+    label = static_cast<std::byte>(numbers.integer(0, kMaximumSegments - 1));
+  std::vector<std::byte> voxels;
+  for (int z = 0; z < dims.z; ++z)
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x) {
+        const glm::ivec3 patch = glm::ivec3(x, y, z) * patches / dims;
+        voxels.push_back(labels[static_cast<std::size_t>((patch.z * patches + patch.y) * patches + patch.x)]);
+      }
+  return std::make_shared<const Volume>("labels", Grid{dims, spacing}, ScalarType::uint8, std::move(voxels));
+}
+
+std::bitset<kMaximumSegments> randomSegments(Numbers& numbers) {
+  std::bitset<kMaximumSegments> segments;
+  const double share = numbers.unit();
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    segments[i] = numbers.unit() < share;
+  return segments;
+}
+
 std::shared_ptr<const TransferFunction> randomTransferFunction(Numbers& numbers) {
   std::vector<double> ends(static_cast<std::size_t>(2 * numbers.integer(1, 4)));
   for (double& end : ends)

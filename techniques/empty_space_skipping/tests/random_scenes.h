@@ -23,6 +23,12 @@ private:
 /// Smooth blobs on an even ground, with some noise in places: empty and full regions, steep and flat ones.
 std::shared_ptr<const Volume> randomVolume(Numbers& numbers, glm::ivec3 dims, ScalarType type, glm::dvec3 spacing);
 
+/// Patches of up to 128 labels.
+std::shared_ptr<const Volume> randomLabels(Numbers& numbers, glm::ivec3 dims, glm::dvec3 spacing);
+
+/// Each label by chance.
+std::bitset<kMaximumSegments> randomSegments(Numbers& numbers);
+
 /// One to four bands of opacity with gaps in between, some of them narrow, some with jumps.
 std::shared_ptr<const TransferFunction> randomTransferFunction(Numbers& numbers);
 

@@ -64,7 +64,9 @@ std::vector<Method> methods() {
           {"distance_texel2", dvrDistanceMap, {{"texel", std::int64_t(2)}}},
           {"distance_texel16", dvrDistanceMap, {{"texel", std::int64_t(16)}}},
           {"chebyshev_texel4", dvrChebyshevDistance},
-          {"chebyshev_texel2", dvrChebyshevDistance, {{"texel", std::int64_t(2)}}}};
+          {"chebyshev_texel2", dvrChebyshevDistance, {{"texel", std::int64_t(2)}}},
+          {"bricks8", dvrRayQuery},
+          {"bricks2", dvrRayQuery, {{"brick", std::int64_t(2)}}}};
 }
 
 TechniqueFactory plainMarching() {
@@ -81,23 +83,32 @@ struct Case {
   Values march;
   bool lit = false;    ///< by a spotlight, with shadows
   bool beyond = false; ///< draws what clipping planes cut off
+  bool segmented = false;
 };
 
 const Case kCases[] = {
-    {{33, 29, 31}, ScalarType::uint8, {1, 1, 1}, {{"step", 0.5}}},
+    {{33, 29, 31}, ScalarType::uint8, {1, 1, 1}, {{"step", 0.5}}, false, false, true},
     {{65, 17, 3}, ScalarType::float32, {1, 1, 1}, {{"step", 0.7}, {"early_termination", false}}, true},
-    {{17, 17, 17}, ScalarType::uint16, {0.7, 1.3, 2.1}, {{"step", 1.0}, {"filtering", std::string("shader")}}},
+    {{17, 17, 17},
+     ScalarType::uint16,
+     {0.7, 1.3, 2.1},
+     {{"step", 1.0}, {"filtering", std::string("shader")}},
+     true,
+     false,
+     true},
     {{40, 2, 23}, ScalarType::int16, {1, 1, 1}, {{"step", 0.31}}, true, true},
     {{31, 33, 30},
      ScalarType::uint8,
      {1, 1, 1.5},
      {{"step", 1.0}, {"transfer_function_kind", std::string("preintegrated")}},
      false,
+     true,
      true},
     {{24, 35, 19},
      ScalarType::float32,
      {1.2, 1, 0.9},
      {{"step", 3.5}, {"transfer_function_kind", std::string("preintegrated")}, {"early_termination", false}},
+     true,
      true,
      true},
     {{29, 31, 27}, ScalarType::int8, {1, 1, 1}, {{"step", 0.8}, {"jitter", true}}, false, true},
@@ -124,6 +135,7 @@ class Skipping : public testing::TestWithParam<Method> {};
 
 TEST_P(Skipping, ChangesNoPixel) {
   const Method& method = GetParam();
+  if (method.factory == dvrRayQuery && !parts::device().facts().rayQuery) GTEST_SKIP() << "no ray queries";
   constexpr int kFunctions = 16; // of each case
   Numbers numbers(7);
   int skippedSomething = 0;
@@ -131,6 +143,8 @@ TEST_P(Skipping, ChangesNoPixel) {
     Scene scene = parts::makeScene(randomVolume(numbers, c.dims, c.type, c.spacing),
                                    c.lit ? ShadingModel::ggx : ShadingModel::none);
     scene.shading.shadows = c.lit;
+    if (c.segmented)
+      scene.volume = std::make_shared<const Volume>(scene.volume->withLabels(randomLabels(numbers, c.dims, c.spacing)));
     if (c.beyond) scene.functionBeyond = randomTransferFunction(numbers);
     Values march = c.march;
     march.emplace_back("shadow_resolution", std::int64_t(48));
@@ -148,7 +162,9 @@ TEST_P(Skipping, ChangesNoPixel) {
       const FrameInputs inputs{.views = {randomView(numbers, grid, kWidth, kHeight)},
                                .transferFunction = randomTransferFunction(numbers),
                                .clippingPlanes = randomPlanes(numbers, grid),
-                               .light = randomLight(numbers, c.lit)};
+                               .light = randomLight(numbers, c.lit),
+                               .hiddenSegments =
+                                   c.segmented ? randomSegments(numbers) : std::bitset<kMaximumSegments>()};
       const Drawn expected = plain.draw(inputs, true);
       const Drawn found = skipping.draw(inputs, true);
       const std::string where = fmt::format("{} x {} x {}, function {}", c.dims.x, c.dims.y, c.dims.z, i);

@@ -1,4 +1,5 @@
 // Structures built on the GPU equal plain ones of the CPU, bit for bit, and know of everything that rays can meet.
+#include "brick_boxes.h"
 #include "distance_map.h"
 #include "octree.h"
 #include "parts/marcher.h"
@@ -30,6 +31,7 @@ public:
     m_texture.emplace(parts::device(), scene, gpu::Filtering::shader, m_recorder);
     structure = makeStructure(parts::device(), scene, *m_texture, settings);
     constants = buildConstants(scene, *m_texture, settings);
+    structure->prepareBuild(0, visible);
     structure->build(m_commands, m_texture->at(0), visible);
     // Once more: a second build must not depend on the first.
     structure->build(m_commands, m_texture->at(0), visible);
@@ -200,6 +202,38 @@ TEST_P(Bits, EqualThoseOfTheCpuOnEveryLevel) {
 
 INSTANTIATE_TEST_SUITE_P(All, Bits, testing::Values(8, 16, 32, 64, 128));
 
+TEST(Octree, LabelsAreThoseOfAllVoxelsNearestToABlocksPlaces) {
+  Numbers numbers(24);
+  for (const Shape& shape : kShapes) {
+    const Scene scene = parts::makeScene(randomLabels(numbers, shape.dims, {1, 1, 1}), ShadingModel::none);
+    const Scene raw{.name = "labels", .volume = scene.volume, .visualisationRange = {0, 255}};
+    for (const int edge : {2, 4, 16})
+      for (const bool voxels : {false, true}) {
+        const StructureSettings settings{
+            .kind = StructureKind::labelOctree, .blockEdge = edge, .skippedLevels = 0, .voxelBlocks = voxels};
+        Built built(raw, settings, {});
+        const auto& octree = dynamic_cast<const Octree&>(*built.structure);
+        const auto found = built.read(octree.nodes(), 0, octree.shape().leaves, sizeof(glm::uvec4));
+        std::size_t index = 0;
+        std::size_t wrong = 0;
+        forNodes(octree.shape().leaves, [&](glm::ivec3 node) {
+          glm::uvec4 bits(0);
+          forCells(cellsOf(raw.volume->grid(), voxels), node, edge, [&](glm::ivec3 cell) {
+            for (int corner = 0; corner < (voxels ? 1 : 8); ++corner) {
+              const glm::ivec3 at =
+                  glm::min(cell + glm::ivec3(corner & 1, (corner >> 1) & 1, corner >> 2), shape.dims - 1);
+              const auto label = static_cast<int>(raw.volume->value(at.x, at.y, at.z));
+              bits[label / 32] |= 1u << (label % 32);
+            }
+          });
+          if (std::memcmp(&bits, found.data() + index * sizeof(bits), sizeof(bits)) != 0) ++wrong;
+          ++index;
+        });
+        EXPECT_EQ(wrong, 0u) << fmt::format("leaf {}, {}", edge, voxels ? "voxels" : "cells");
+      }
+  }
+}
+
 TEST(Octree, RangesAndFlagsEqualThoseOfTheCpu) {
   Numbers numbers(22);
   for (const Shape& shape : kShapes) {
@@ -253,6 +287,47 @@ TEST(Octree, RangesAndFlagsEqualThoseOfTheCpu) {
         ++index;
       });
       EXPECT_EQ(root[0] != std::byte(0), any);
+    }
+  }
+}
+
+TEST(Bricks, AreThoseThatShowInMortonOrder) {
+  if (!parts::device().facts().rayQuery) GTEST_SKIP() << "no ray queries";
+  Numbers numbers(25);
+  for (const Shape& shape : kShapes) {
+    const Scene scene = parts::makeScene(randomVolume(numbers, shape.dims, shape.type, {1, 1, 1}), ShadingModel::none);
+    const VisibleScalars visible = randomVisible(numbers);
+    for (const int edge : {2, 8}) {
+      Built built(scene, {.kind = StructureKind::bricks, .blockEdge = edge}, visible);
+      const std::vector<BrickBox>& boxes = dynamic_cast<const BrickBoxes&>(*built.structure).boxes();
+      const auto placeOf = [&](const BrickBox& box) { return glm::ivec3(glm::round(box.low)) / edge; };
+      const auto isBoxed = [&](glm::ivec3 brick) {
+        return std::any_of(boxes.begin(), boxes.end(), [&](const BrickBox& box) { return placeOf(box) == brick; });
+      };
+      std::size_t occupied = 0;
+      forNodes(blocksOf(cellsOf(scene.volume->grid(), false), edge), [&](glm::ivec3 brick) {
+        Span block;
+        forCells(cellsOf(scene.volume->grid(), false), brick, edge, [&](glm::ivec3 cell) {
+          const Span span = spanOfCell(*scene.volume, built.constants, cell, false);
+          block.add(span.low);
+          block.add(span.high);
+        });
+        const bool shows = visible.anyBetween(block.low, block.high);
+        occupied += shows ? 1 : 0;
+        EXPECT_EQ(isBoxed(brick), shows);
+      });
+      EXPECT_EQ(boxes.size(), occupied);
+      // Neighbours in the order are neighbours in space: halves, quarters ... of the tree are compact.
+      for (std::size_t i = 1; i < boxes.size(); ++i) {
+        const glm::ivec3 a = placeOf(boxes[i - 1]);
+        const glm::ivec3 b = placeOf(boxes[i]);
+        int axis = 0; // the one with the highest bit that differs; z before y before x
+        for (int other = 1; other < 3; ++other)
+          if (std::bit_width(static_cast<unsigned>(a[other] ^ b[other])) >=
+              std::bit_width(static_cast<unsigned>(a[axis] ^ b[axis])))
+            axis = other;
+        EXPECT_LT(a[axis], b[axis]);
+      }
     }
   }
 }

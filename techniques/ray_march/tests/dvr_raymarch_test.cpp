@@ -161,6 +161,45 @@ TEST(DvrRaymarch, BeyondClippingPlanesTheOtherFunctionHolds) {
   }
 }
 
+TEST(DvrRaymarch, HiddenSegmentsAreLeftOut) {
+  Scene scene = rippleScene();
+  const Grid& grid = scene.volume->grid();
+  const auto labels = [](const glm::dvec3& p) {
+    return std::floor(3 * p.x) + 3 * std::floor(3 * p.y) + 9 * std::floor(3 * p.z);
+  };
+  std::vector<std::byte> voxels;
+  for (int z = 0; z < grid.dims.z; ++z)
+    for (int y = 0; y < grid.dims.y; ++y)
+      for (int x = 0; x < grid.dims.x; ++x)
+        voxels.push_back(static_cast<std::byte>(labels((glm::dvec3(x, y, z) + 0.5) / glm::dvec3(grid.dims))));
+  scene.volume = std::make_shared<const Volume>(
+      scene.volume->withLabels(std::make_shared<const Volume>("labels", grid, ScalarType::uint8, std::move(voxels))));
+  FrameInputs inputs = inputsFor(scene, 0.4);
+  for (std::size_t label = 0; label < 27; label += 2)
+    inputs.hiddenSegments.set(label);
+  for (const char* filtering : {"hardware", "shader"}) {
+    Values post = kind("post", 0.6);
+    post.emplace_back("filtering", std::string(filtering));
+    Values slabs = kind("preintegrated", 0.6);
+    slabs.emplace_back("filtering", std::string(filtering));
+    // A sample half-way between two voxels belongs to one or the other by rounding.
+    EXPECT_LT(
+        meanDifference(draw(scene, inputs, post), referenceOf(scene, inputs, {.form = Form::point, .stepVoxels = 0.6})),
+        1e-4);
+    EXPECT_LT(meanDifference(draw(scene, inputs, slabs),
+                             referenceOf(scene, inputs, {.form = Form::preintegrated, .stepVoxels = 0.6})),
+              1e-4);
+  }
+  // Showing all again needs no new session; hiding all leaves nothing.
+  Session session(dvrRaymarch(), scene, withParameters(dvrRaymarch(), kind("post", 0.6)), {kWidth, kHeight, 1});
+  inputs.hiddenSegments.set();
+  EXPECT_EQ(session.draw(inputs, true).counters.at("visible_samples"), 0u);
+  inputs.hiddenSegments.reset();
+  EXPECT_LT(largestDifference(session.draw(inputs).pictures[0],
+                              referenceOf(scene, inputs, {.form = Form::point, .stepVoxels = 0.6})),
+            kOneOf255);
+}
+
 FrameInputs inSpotlight(FrameInputs inputs, const glm::dvec3& direction) {
   inputs.light = {.headlight = false, .direction = glm::normalize(direction), .spot = true, .ambient = 0};
   return inputs;
