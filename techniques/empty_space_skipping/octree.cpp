@@ -105,10 +105,14 @@ std::optional<std::string> whyOctreeUnsupported(const StructureSettings& setting
         *settings.skippedLevels, rootLevel, settings.blockEdge);
   const OctreeShape shape = octreeShape(settings, volume.grid());
   const std::uint64_t leafBytes = bytesOf(nodeFormat(settings, volume.type()));
-  const std::uint64_t bytes = leafBytes * static_cast<std::uint64_t>(shape.leaves.x) * shape.leaves.y * shape.leaves.z;
+  std::uint64_t bytes = 0;
+  for (int level = 0; level <= shape.initialLevel; ++level) {
+    const glm::ivec3 nodes = shape.leaves >> level;
+    bytes += leafBytes * static_cast<std::uint64_t>(nodes.x) * nodes.y * nodes.z;
+  }
   const std::uint64_t most = device.facts().maximumAllocationBytes;
   if (bytes > most)
-    return fmt::format("The octree's leaves ({} x {} x {} of {} bytes) need {} bytes, the device allows {} at once.",
+    return fmt::format("The octree ({} x {} x {} leaves of {} bytes) needs {} bytes, the device allows {} at once.",
                        shape.leaves.x, shape.leaves.y, shape.leaves.z, leafBytes, bytes, most);
   return std::nullopt;
 }
