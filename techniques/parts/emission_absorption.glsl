@@ -1,9 +1,9 @@
 // Emission and absorption along a path, front to back, in parts: what every direct volume renderer shares. A technique
 // decides which parts of a ray it visits, and calls accumulate() for them, front to back:
 //   beginRay(); for each portion: beginPortion(), accumulateBeginning(), accumulate() ...; finishRay().
-// Macros: PREINTEGRATED. LABELS_BINDING: the labels of segments are bound there, some may be hidden. BEYOND_BINDING: what clipping planes cut off is drawn, too, by the table bound there.
-// SHADOWS_BINDING: samples look up the opacity shadow map bound there. SHADOW_MAP_BINDING: the rays are the light's, and
-// write that map instead of a picture.
+// Macros: PREINTEGRATED. LABELS_BINDING: the labels of segments are bound there, some may be hidden. BEYOND_BINDING: what
+// clipping planes cut off is drawn, too, by the table bound there. SHADOWS_BINDING: samples look up the opacity shadow map
+// bound there. SHADOW_MAP_BINDING: the rays are the light's, and write that map instead of a picture.
 #ifndef PARTS_EMISSION_ABSORPTION_GLSL
 #define PARTS_EMISSION_ABSORPTION_GLSL
 
@@ -75,6 +75,7 @@ bool goesOn(float transmittance) {
   return transmittance > transmittanceOfDepth(kShadowDepths - 1);
 }
 
+// As below, of the opacity alone.
 void addShown(VolumeGrid grid, Path path, vec4 sampled, float place, bool there, inout Accumulation sum) {
   bool counts = there && goesOn(sum.transmittance);
   if (kCounting && counts) {
