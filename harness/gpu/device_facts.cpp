@@ -58,18 +58,32 @@ void fillProperties(VkPhysicalDevice device, DeviceFacts& facts) {
   const int family = chooseQueueFamily(device);
   if (family >= 0)
     facts.timestampValidBits = queueFamilies(device)[static_cast<std::size_t>(family)].timestampValidBits;
+  facts.subPixelBits = limits.subPixelPrecisionBits;
   facts.timestampPeriodNs = facts.timestampValidBits ? static_cast<double>(limits.timestampPeriod) : 0;
+}
+
+void fillMeshLimits(VkPhysicalDevice device, DeviceFacts& facts) {
+  VkPhysicalDeviceMeshShaderPropertiesEXT mesh{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_PROPERTIES_EXT};
+  VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &mesh};
+  vkGetPhysicalDeviceProperties2(device, &all);
+  std::copy_n(mesh.maxTaskWorkGroupCount, 3, facts.maximumTaskWorkgroups);
+  facts.maximumTotalTaskWorkgroups = mesh.maxTaskWorkGroupTotalCount;
+  facts.maximumMeshVertices = mesh.maxMeshOutputVertices;
+  facts.maximumMeshPrimitives = mesh.maxMeshOutputPrimitives;
 }
 
 void fillFeatures(const DeviceFeatures& enabled, DeviceFacts& facts) {
   facts.meshShader = enabled.mesh.meshShader;
   facts.multiview = enabled.vulkan11.multiview;
+  facts.vertexLayer = enabled.vulkan12.shaderOutputLayer;
   facts.int8 = enabled.vulkan12.shaderInt8 && enabled.vulkan12.storageBuffer8BitAccess;
   facts.int16 = enabled.core.features.shaderInt16 && enabled.vulkan11.storageBuffer16BitAccess;
   facts.int64 = enabled.core.features.shaderInt64;
   facts.int64BufferAtomics = enabled.vulkan12.shaderBufferInt64Atomics;
   facts.float64 = enabled.core.features.shaderFloat64;
   facts.fragmentStores = enabled.core.features.fragmentStoresAndAtomics;
+  facts.vertexStores = enabled.core.features.vertexPipelineStoresAndAtomics;
+  facts.representativeFragmentTest = enabled.representative.representativeFragmentTest;
   facts.subgroupSizeControl = enabled.vulkan13.subgroupSizeControl;
   facts.rayQuery = enabled.rayQuery.rayQuery;
   facts.pipelineStatistics = enabled.core.features.pipelineStatisticsQuery;
@@ -120,6 +134,7 @@ DeviceFacts queryFacts(VkPhysicalDevice device, int index) {
   DeviceFeatures enabled(extensions);
   chooseFeatures(supported, enabled);
   fillFeatures(enabled, facts);
+  if (facts.meshShader) fillMeshLimits(device, facts);
   facts.missing = whatIsMissing(device, extensions, enabled);
   return facts;
 }

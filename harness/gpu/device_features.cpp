@@ -95,6 +95,10 @@ DeviceFeatures::DeviceFeatures(const std::vector<VkExtensionProperties>& extensi
     *end = &mesh;
     end = &mesh.pNext;
   }
+  if (contains(extensions, VK_NV_REPRESENTATIVE_FRAGMENT_TEST_EXTENSION_NAME)) {
+    *end = &representative;
+    end = &representative.pNext;
+  }
   if (contains(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME) &&
       contains(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
       contains(extensions, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME)) {
@@ -110,6 +114,7 @@ void chooseFeatures(const DeviceFeatures& supported, DeviceFeatures& enabled) {
   copyFlags(supported.vulkan13, enabled.vulkan13, kVulkan13);
   enabled.mesh.taskShader = enabled.mesh.meshShader = supported.mesh.taskShader && supported.mesh.meshShader;
   enabled.mesh.meshShaderQueries = enabled.mesh.meshShader && supported.mesh.meshShaderQueries;
+  enabled.representative.representativeFragmentTest = supported.representative.representativeFragmentTest;
   enabled.rayQuery.rayQuery = enabled.acceleration.accelerationStructure =
       supported.rayQuery.rayQuery && supported.acceleration.accelerationStructure;
 }
@@ -117,6 +122,8 @@ void chooseFeatures(const DeviceFeatures& supported, DeviceFeatures& enabled) {
 std::vector<const char*> chooseExtensions(const DeviceFeatures& enabled) {
   std::vector<const char*> names = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
   if (enabled.mesh.meshShader) names.push_back(VK_EXT_MESH_SHADER_EXTENSION_NAME);
+  if (enabled.representative.representativeFragmentTest)
+    names.push_back(VK_NV_REPRESENTATIVE_FRAGMENT_TEST_EXTENSION_NAME);
   if (enabled.rayQuery.rayQuery)
     names.insert(names.end(), {VK_KHR_RAY_QUERY_EXTENSION_NAME, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
                                VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME});

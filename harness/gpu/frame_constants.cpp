@@ -46,7 +46,8 @@ vec4 placeOf(const Light& light, const Grid& grid) {
 
 ivec2 sizeOf(const Frame& frame) {
   if (frame.target) return {frame.target->width, frame.target->height};
-  assert(frame.pictures && !frame.pictures->empty());
+  if (!frame.pictures) return {0, 0};
+  assert(!frame.pictures->empty());
   return {frame.pictures->front().width, frame.pictures->front().height};
 }
 

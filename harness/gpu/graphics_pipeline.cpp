@@ -86,6 +86,12 @@ void Pipeline::createGraphics(const GraphicsPipelineDescription& description) {
   rendering.pColorAttachmentFormats = description.colorFormats.data();
   rendering.depthAttachmentFormat = description.depthFormat;
 
+  VkPipelineRepresentativeFragmentTestStateCreateInfoNV representative{
+      VK_STRUCTURE_TYPE_PIPELINE_REPRESENTATIVE_FRAGMENT_TEST_STATE_CREATE_INFO_NV};
+  representative.representativeFragmentTestEnable = VK_TRUE;
+  if (description.representativeFragmentTest && m_device->facts().representativeFragmentTest)
+    rendering.pNext = &representative;
+
   VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
   info.stageCount = static_cast<std::uint32_t>(stages.infos().size());
   info.pStages = stages.infos().data();

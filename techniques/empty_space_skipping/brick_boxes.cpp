@@ -20,7 +20,7 @@ std::uint64_t mortonCode(const glm::ivec3& place) {
 }
 
 std::uint64_t brickCount(const StructureSettings& settings, const Grid& grid) {
-  const glm::ivec3 bricks = blocksOf(cellsOf(grid, false), settings.blockEdge);
+  const glm::ivec3 bricks = parts::blocksOf(cellsOf(grid, false), glm::ivec3(settings.blockEdge));
   return static_cast<std::uint64_t>(bricks.x) * bricks.y * bricks.z;
 }
 
@@ -41,7 +41,7 @@ std::optional<std::string> whyBrickBoxesUnsupported(const StructureSettings& set
 BrickBoxes::BrickBoxes(gpu::Device& device, const Scene& scene, const StructureSettings& settings)
     : m_scene(scene), m_settings(settings),
       m_tree(device, static_cast<std::uint32_t>(brickCount(settings, scene.volume->grid()))) {
-  const glm::ivec3 bricks = blocksOf(cellsOf(scene.volume->grid(), false), settings.blockEdge);
+  const glm::ivec3 bricks = parts::blocksOf(cellsOf(scene.volume->grid(), false), glm::ivec3(settings.blockEdge));
   for (int z = 0; z < bricks.z; ++z)
     for (int y = 0; y < bricks.y; ++y)
       for (int x = 0; x < bricks.x; ++x)

@@ -9,7 +9,7 @@ namespace volmark::empty_space_skipping {
 namespace {
 
 std::uint64_t texelCount(const StructureSettings& settings, const Grid& grid) {
-  const glm::ivec3 texels = blocksOf(cellsOf(grid, false), settings.blockEdge);
+  const glm::ivec3 texels = parts::blocksOf(cellsOf(grid, false), glm::ivec3(settings.blockEdge));
   return static_cast<std::uint64_t>(texels.x) * texels.y * texels.z;
 }
 
@@ -68,14 +68,15 @@ DistanceMap::DistanceMap(gpu::Device& device, const Scene& scene, const gpu::Vol
   m_occupied = texelBuffer(device, "occupancy", texels);
   m_alongX = texelBuffer(device, "distances_x", texels);
   m_alongY = texelBuffer(device, "distances_y", texels);
-  m_occupancy = {device,
-                 gpu::ComputePipelineDescription{
-                     .name = "occupancy",
-                     .shader = {.path = "empty_space_skipping/occupancy.comp.glsl"},
-                     .layout = {.bindings = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                             VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                .pushConstantBytes = sizeof(BuildConstants)},
-                     .specialisation = gpu::Specialisation().set(kIdCooperative, isCooperative(settings.blockEdge))}};
+  m_occupancy = {
+      device, gpu::ComputePipelineDescription{
+                  .name = "occupancy",
+                  .shader = {.path = "empty_space_skipping/occupancy.comp.glsl"},
+                  .layout = {.bindings = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                          VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                             .pushConstantBytes = sizeof(BuildConstants)},
+                  .specialisation =
+                      gpu::Specialisation().set(kIdCooperative, parts::isCooperative(glm::ivec3(settings.blockEdge)))}};
   m_transform = transformer(device, settings.kind, false);
   m_lastTransform = transformer(device, settings.kind, true);
 }
@@ -87,7 +88,7 @@ void DistanceMap::transform(gpu::Commands& commands, const DistanceConstants& co
   const gpu::Resource resources[] = {whole(before), written, whole(m_occupied)};
   commands.barrier(gpu::kComputeReadWrite, gpu::kComputeReadWrite);
   commands.dispatch(after ? m_transform : m_lastTransform, resources, gpu::bytesOf(constants),
-                    buildGroups(constants.texels, false));
+                    parts::rangeGroups(constants.texels, false));
 }
 
 void DistanceMap::buildEuclidean(gpu::Commands& commands) {
@@ -134,7 +135,7 @@ void DistanceMap::build(gpu::Commands& commands, const gpu::SampledImage& volume
   constants.tableEntries = visible.entries();
   const gpu::Resource resources[] = {volume, whole(m_occupied), visibleBuffer(commands, visible)};
   commands.dispatch(m_occupancy, resources, gpu::bytesOf(constants),
-                    buildGroups(constants.blocks, isCooperative(m_settings.blockEdge)));
+                    parts::rangeGroups(constants.blocks, parts::isCooperative(glm::ivec3(m_settings.blockEdge))));
   if (m_settings.kind == StructureKind::chebyshevMap)
     buildChebyshev(commands);
   else

@@ -9,7 +9,7 @@
 
 #include <empty_space_skipping/shared.h>
 
-layout(local_size_x = kBuildGroup, local_size_y = kBuildGroup, local_size_z = kBuildGroup) in;
+layout(local_size_x = kRangeGroup, local_size_y = kRangeGroup, local_size_z = kRangeGroup) in;
 
 layout(set = 0, binding = kBindingBefore, scalar) readonly buffer Before {
   uint before[];

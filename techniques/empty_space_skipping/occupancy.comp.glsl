@@ -11,7 +11,7 @@ layout(set = 0, binding = kBindingNodes, scalar) writeonly buffer Occupancy {
 
 void main() {
   ivec3 texel = blockOfInvocation();
-  vec2 range = rangeOf(texel);
+  vec2 range = rangeOfBlock(texel);
   if (any(greaterThanEqual(texel, build.blocks)) || (kCooperative && gl_LocalInvocationIndex != 0u)) return;
   bool shows = showsBetween(scalarOf(range.x), scalarOf(range.y), build.tableEntries);
   occupied[(texel.z * build.blocks.y + texel.y) * build.blocks.x + texel.x] = shows ? 1u : 0u;

@@ -1,5 +1,6 @@
 #include "octree.h"
 
+#include "parts/min_max_grid.h"
 #include "volmark/gpu/volume_texture.h"
 
 #include <fmt/format.h>
@@ -19,33 +20,19 @@ const char* qualifierOf(VkFormat format) {
   case VK_FORMAT_R16_UINT: return "r16ui";
   case VK_FORMAT_R32_UINT: return "r32ui";
   case VK_FORMAT_R32G32_UINT: return "rg32ui";
-  case VK_FORMAT_R32G32B32A32_UINT: return "rgba32ui";
-  case VK_FORMAT_R8G8_UNORM: return "rg8";
-  case VK_FORMAT_R16G16_UNORM: return "rg16";
-  default: return "rg32f";
+  default: return "rgba32ui";
   }
 }
 
 std::uint64_t bytesOf(VkFormat format) {
   switch (format) {
   case VK_FORMAT_R8_UINT: return 1;
-  case VK_FORMAT_R16_UINT:
-  case VK_FORMAT_R8G8_UNORM: return 2;
-  case VK_FORMAT_R32_UINT:
-  case VK_FORMAT_R16G16_UNORM: return 4;
-  case VK_FORMAT_R32G32_UINT:
-  case VK_FORMAT_R32G32_SFLOAT: return 8;
+  case VK_FORMAT_R16_UINT: return 2;
+  case VK_FORMAT_R32_UINT: return 4;
+  case VK_FORMAT_R32G32_UINT: return 8;
   default: return 16;
   }
 }
-
-int rootLevelOf(const glm::ivec3& blocks) {
-  const int most = std::max({blocks.x, blocks.y, blocks.z});
-  return static_cast<int>(std::bit_width(static_cast<unsigned>(most - 1)));
-}
-
-/// Levels next to the root hold something visible in any picture worth drawing (section 4.3).
-constexpr int kLevelsSkippedByDefault = 3;
 
 gpu::Pipeline builder(gpu::Device& device, const char* file, const StructureSettings& settings, VkFormat format,
                       std::vector<VkDescriptorType> bindings, bool cooperative) {
@@ -59,57 +46,35 @@ gpu::Pipeline builder(gpu::Device& device, const char* file, const StructureSett
 
 } // namespace
 
-OctreeShape octreeShape(const StructureSettings& settings, const Grid& grid) {
-  OctreeShape shape;
-  shape.blocks = blocksOf(cellsOf(grid, settings.voxelBlocks), settings.blockEdge);
-  shape.rootLevel = rootLevelOf(shape.blocks);
-  const int skipped = settings.skippedLevels.value_or(std::min(kLevelsSkippedByDefault, shape.rootLevel));
-  assert(skipped >= 0 && skipped <= shape.rootLevel);
-  shape.initialLevel = shape.rootLevel - skipped;
-  const int node = 1 << shape.initialLevel;
-  shape.leaves = (shape.blocks + node - 1) / node * node;
-  return shape;
+parts::OctreeShape octreeShapeOf(const StructureSettings& settings, const Grid& grid) {
+  const glm::ivec3 cells = cellsOf(grid, settings.voxelBlocks);
+  return parts::octreeShape(parts::blocksOf(cells, glm::ivec3(settings.blockEdge)), settings.skippedLevels);
 }
 
-VkFormat nodeFormat(const StructureSettings& settings, ScalarType type) {
-  switch (settings.kind) {
-  case StructureKind::minMaxOctree:
-    switch (type) {
-    case ScalarType::int8:
-    case ScalarType::uint8: return VK_FORMAT_R8G8_UNORM;
-    case ScalarType::int16:
-    case ScalarType::uint16: return VK_FORMAT_R16G16_UNORM;
-    case ScalarType::float32: return VK_FORMAT_R32G32_SFLOAT;
-    }
-    break;
-  case StructureKind::bitfieldOctree:
-    switch (settings.bits) {
-    case 8: return VK_FORMAT_R8_UINT;
-    case 16: return VK_FORMAT_R16_UINT;
-    case 32: return VK_FORMAT_R32_UINT;
-    case 64: return VK_FORMAT_R32G32_UINT;
-    default: return VK_FORMAT_R32G32B32A32_UINT;
-    }
-  case StructureKind::labelOctree: return VK_FORMAT_R32G32B32A32_UINT;
-  default: break;
+VkFormat nodeFormat(const StructureSettings& settings) {
+  if (settings.kind == StructureKind::labelOctree) return VK_FORMAT_R32G32B32A32_UINT;
+  if (settings.kind != StructureKind::bitfieldOctree) return VK_FORMAT_R8_UINT;
+  switch (settings.bits) {
+  case 8: return VK_FORMAT_R8_UINT;
+  case 16: return VK_FORMAT_R16_UINT;
+  case 32: return VK_FORMAT_R32_UINT;
+  case 64: return VK_FORMAT_R32G32_UINT;
+  default: return VK_FORMAT_R32G32B32A32_UINT;
   }
-  return VK_FORMAT_R8_UINT;
 }
 
 std::optional<std::string> whyOctreeUnsupported(const StructureSettings& settings, const Volume& volume,
                                                 const gpu::Device& device) {
-  const int rootLevel = rootLevelOf(blocksOf(cellsOf(volume.grid(), settings.voxelBlocks), settings.blockEdge));
+  const glm::ivec3 cells = cellsOf(volume.grid(), settings.voxelBlocks);
+  const int rootLevel = parts::rootLevelOf(parts::blocksOf(cells, glm::ivec3(settings.blockEdge)));
   if (settings.skippedLevels && *settings.skippedLevels > rootLevel)
     return fmt::format(
         "initial_level: found {}, allowed: at most {}, the level of the leaves of this octree (leaf {}).",
         *settings.skippedLevels, rootLevel, settings.blockEdge);
-  const OctreeShape shape = octreeShape(settings, volume.grid());
-  const std::uint64_t leafBytes = bytesOf(nodeFormat(settings, volume.type()));
-  std::uint64_t bytes = 0;
-  for (int level = 0; level <= shape.initialLevel; ++level) {
-    const glm::ivec3 nodes = shape.leaves >> level;
-    bytes += leafBytes * static_cast<std::uint64_t>(nodes.x) * nodes.y * nodes.z;
-  }
+  const parts::OctreeShape shape = octreeShapeOf(settings, volume.grid());
+  if (settings.kind == StructureKind::minMaxOctree) return parts::MinMaxGrid::whyUnsupported(device, volume, shape);
+  const std::uint64_t leafBytes = bytesOf(nodeFormat(settings));
+  const std::uint64_t bytes = leafBytes * shape.nodeCount();
   const std::uint64_t most = device.facts().maximumAllocationBytes;
   if (bytes > most)
     return fmt::format("The octree ({} x {} x {} leaves of {} bytes) needs {} bytes, the device allows {} at once.",
@@ -117,11 +82,18 @@ std::optional<std::string> whyOctreeUnsupported(const StructureSettings& setting
   return std::nullopt;
 }
 
+SkippingConstants octreeConstants(const StructureSettings& settings, const parts::OctreeShape& shape) {
+  SkippingConstants constants{};
+  constants.blockShift = std::countr_zero(static_cast<unsigned>(settings.blockEdge));
+  constants.initialLevel = shape.initialLevel;
+  return constants;
+}
+
 Octree::Octree(gpu::Device& device, const Scene& scene, const gpu::VolumeTexture& volume,
                const StructureSettings& settings)
-    : m_settings(settings), m_shape(octreeShape(settings, scene.volume->grid())),
+    : m_settings(settings), m_shape(octreeShapeOf(settings, scene.volume->grid())),
       m_constants(buildConstants(scene, volume, settings)) {
-  const VkFormat format = nodeFormat(settings, scene.volume->type());
+  const VkFormat format = nodeFormat(settings);
   m_nodes = gpu::Image(
       device, {.name = settings.kind == StructureKind::labelOctree ? "label_octree" : "octree",
                .type = VK_IMAGE_TYPE_3D,
@@ -135,7 +107,8 @@ Octree::Octree(gpu::Device& device, const Scene& scene, const gpu::VolumeTexture
                                             VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
   m_parents = builder(device, "octree_parents.comp.glsl", settings, format, bindings, false);
   if (dependsOnTransferFunction()) bindings.push_back(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
-  m_leaves = builder(device, "octree_leaves.comp.glsl", settings, format, bindings, isCooperative(settings.blockEdge));
+  m_leaves = builder(device, "octree_leaves.comp.glsl", settings, format, bindings,
+                     parts::isCooperative(glm::ivec3(settings.blockEdge)));
 }
 
 void Octree::build(gpu::Commands& commands, const gpu::SampledImage& volume, const VisibleScalars& visible) {
@@ -149,7 +122,7 @@ void Octree::build(gpu::Commands& commands, const gpu::SampledImage& volume, con
   std::vector<gpu::Resource> leaves = {volume, gpu::StorageImage{m_nodes.levelView(0)}};
   if (dependsOnTransferFunction()) leaves.emplace_back(visibleBuffer(commands, visible));
   commands.dispatch(m_leaves, leaves, gpu::bytesOf(constants),
-                    buildGroups(m_shape.leaves, isCooperative(m_settings.blockEdge)));
+                    parts::rangeGroups(m_shape.leaves, parts::isCooperative(glm::ivec3(m_settings.blockEdge))));
   for (int level = 1; level <= m_shape.initialLevel; ++level) {
     commands.barrier(gpu::kComputeWrite, gpu::kComputeReadWrite);
     constants.nodes = m_shape.leaves >> level;
@@ -157,7 +130,7 @@ void Octree::build(gpu::Commands& commands, const gpu::SampledImage& volume, con
     const gpu::Resource nodes[] = {
         gpu::SampledImage{m_nodes.levelView(index - 1), m_sampler.handle(), VK_IMAGE_LAYOUT_GENERAL},
         gpu::StorageImage{m_nodes.levelView(index)}};
-    commands.dispatch(m_parents, nodes, gpu::bytesOf(constants), buildGroups(constants.nodes, false));
+    commands.dispatch(m_parents, nodes, gpu::bytesOf(constants), parts::rangeGroups(constants.nodes, false));
   }
   commands.barrier(gpu::kComputeWrite, gpu::kComputeRead);
 }
@@ -167,13 +140,11 @@ std::vector<gpu::Resource> Octree::resources() const {
 }
 
 SkippingConstants Octree::constants(const VisibleScalars& kept, const VisibleScalars& beyond) const {
-  SkippingConstants constants{};
+  SkippingConstants constants = octreeConstants(m_settings, m_shape);
   if (m_settings.kind == StructureKind::bitfieldOctree) {
     constants.mask = kept.mask(m_settings.bits);
     constants.maskBeyond = beyond.mask(m_settings.bits);
   }
-  constants.blockShift = std::countr_zero(static_cast<unsigned>(m_settings.blockEdge));
-  constants.initialLevel = m_shape.initialLevel;
   return constants;
 }
 

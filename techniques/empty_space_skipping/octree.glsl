@@ -32,26 +32,11 @@ bool isEmpty(Classification by, ivec3 node, int level) {
 #endif
 }
 
-// Finds the largest empty node at or below the level of the search that holds sample `index`, or the leaf. True if it
-// is empty. `last`: all samples up to it are in the node.
-//
-// Top-down, every search starts at the initial level. Bidirectional, it resumes at the level of the last one, and after
-// an empty node one level higher.
+#define QUESTION Classification
+#include <parts/octree.glsl>
+
 bool findEmpty(Classification by, inout Walk walk, int index, out int last) {
-  ivec3 leaf = cellAt(walk, index) >> skipping.blockShift;
-  int level = kBidirectional ? walk.level : skipping.initialLevel;
-  bool empty = isEmpty(by, leaf >> level, level);
-  ++walk.nodes;
-  while (!empty && level > 0) {
-    --level;
-    empty = isEmpty(by, leaf >> level, level);
-    ++walk.nodes;
-  }
-  walk.level = min(level + (empty ? 1 : 0), skipping.initialLevel);
-  int shift = skipping.blockShift + level;
-  ivec3 low = (leaf >> level) << shift;
-  last = lastInside(walk, low, low + (1 << shift) - 1, index);
-  return empty;
+  return findEmptyNode(by, skipping.blockShift, skipping.initialLevel, kBidirectional, walk, index, last);
 }
 
 #endif

@@ -1,29 +1,24 @@
-// An octree as the mip levels of one 3-D image: level 0 are the leaves, a node's children are the eight below it.
+// Octrees of bits as the mip levels of one 3-D image: level 0 are the leaves, a node's children are the eight below it.
 #pragma once
 
+#include "parts/octree_shape.h"
 #include "structure.h"
 #include "volmark/gpu/image.h"
 #include "volmark/gpu/pipeline.h"
 
 namespace volmark::empty_space_skipping {
 
-/// Sizes of the levels that rays ask. Level sizes round up, so that no border is lost; as mip levels round down, the
-/// leaf level is padded to a multiple of the topmost node.
-struct OctreeShape {
-  glm::ivec3 leaves;    ///< along each axis, padded
-  glm::ivec3 blocks;    ///< of them, with voxels
-  int rootLevel = 0;    ///< where one node holds all blocks
-  int initialLevel = 0; ///< highest level that is asked, and made
-};
-
 /// Requires skippedLevels <= rootLevel.
-OctreeShape octreeShape(const StructureSettings& settings, const Grid& grid);
+parts::OctreeShape octreeShapeOf(const StructureSettings& settings, const Grid& grid);
 
-/// Format of a node: as many bits as asked for, or two of the volume's own scalars.
-VkFormat nodeFormat(const StructureSettings& settings, ScalarType type);
+/// Format of a node: as many bits as asked for.
+VkFormat nodeFormat(const StructureSettings& settings);
 
 std::optional<std::string> whyOctreeUnsupported(const StructureSettings& settings, const Volume& volume,
                                                 const gpu::Device& device);
+
+/// What rays need to know of any octree.
+SkippingConstants octreeConstants(const StructureSettings& settings, const parts::OctreeShape& shape);
 
 class Octree final : public Structure {
 public:
@@ -34,12 +29,12 @@ public:
   std::vector<gpu::Resource> resources() const override;
   SkippingConstants constants(const VisibleScalars& kept, const VisibleScalars& beyond) const override;
 
-  const OctreeShape& shape() const { return m_shape; }
+  const parts::OctreeShape& shape() const { return m_shape; }
   const gpu::Image& nodes() const { return m_nodes; }
 
 private:
   StructureSettings m_settings;
-  OctreeShape m_shape;
+  parts::OctreeShape m_shape;
   BuildConstants m_constants;
   gpu::Image m_nodes;
   gpu::Sampler m_sampler;

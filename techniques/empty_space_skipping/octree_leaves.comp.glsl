@@ -1,5 +1,5 @@
 // Leaves of an octree, from the voxels of their blocks (Faludi et al. 2021, section 3.3).
-// Macros: NODE_FORMAT, the image's format; BITFIELD, MINMAX, BOOLEAN, or LABELS (section 5).
+// Macros: NODE_FORMAT, the image's format; BITFIELD, BOOLEAN, or LABELS (section 5).
 // One invocation (one workgroup, if cooperative) is one leaf. octree_parents.comp.glsl runs next.
 #version 460
 
@@ -8,11 +8,7 @@
 #include <empty_space_skipping/visible.glsl>
 #endif
 
-#ifdef MINMAX
-layout(set = 0, binding = kBindingNodes, NODE_FORMAT) uniform writeonly image3D nodes;
-#else
 layout(set = 0, binding = kBindingNodes, NODE_FORMAT) uniform writeonly uimage3D nodes;
-#endif
 
 // Bits 0 to count - 1, of a count that may lie beyond the word.
 uint lowBits(int count) {
@@ -60,7 +56,7 @@ uvec4 bitsOfVoxels(ivec3 block) {
 // Every bin that a trilinear value in the block can lie in. A cell's are those from its lowest to its highest corner;
 // neighbouring cells share corners, so that a block's are all from its lowest to its highest voxel.
 uvec4 binsOfCells(ivec3 block) {
-  vec2 range = rangeOf(block);
+  vec2 range = rangeOfBlock(block);
   int low = binOf(scalarOf(range.x));
   int high = binOf(scalarOf(range.y));
   uvec4 bits;
@@ -81,13 +77,8 @@ void main() {
   uvec4 bits = build.voxelBlocks != 0 ? bitsOfVoxels(node) : binsOfCells(node);
 #endif
   if (writes) imageStore(nodes, node, isBlock ? bits : uvec4(0));
-#elif defined(MINMAX)
-  vec2 range = rangeOf(node);
-  // Neutral to its parent: nothing lies between.
-  vec2 nothing = build.rawScale > 0.0 ? vec2(1, 0) : vec2(3.402823466e38, -3.402823466e38);
-  if (writes) imageStore(nodes, node, vec4(isBlock ? range : nothing, 0, 0));
 #else
-  vec2 range = rangeOf(node);
+  vec2 range = rangeOfBlock(node);
   if (writes) {
     bool shows = isBlock && showsBetween(scalarOf(range.x), scalarOf(range.y), build.tableEntries);
     imageStore(nodes, node, uvec4(shows ? 1u : 0u));

@@ -12,6 +12,7 @@ using glm::uvec4;
 using glm::vec3;
 using uint = std::uint32_t;
 using parts::kBindingOwn;
+using parts::kIdCooperative;
 using parts::kIdOwn;
 #endif
 
@@ -38,12 +39,8 @@ struct BrickBox {
   vec3 high;
 };
 
-// Building: bindings.
-const int kBindingVoxels = 0;  // the volume; for parents: the level below
-const int kBindingNodes = 1;   // what is written
+// Building: bindings, beside kBindingVoxels and kBindingNodes.
 const int kBindingVisible = 2; // prefix sums over the table's entries that show
-const int kBuildGroup = 4;     // invocations of a workgroup along each axis
-const int kIdCooperative = 0;  // a workgroup, instead of an invocation, makes a block
 
 struct BuildConstants {
   ivec3 dims;        // voxels

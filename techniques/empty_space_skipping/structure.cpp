@@ -2,6 +2,7 @@
 
 #include "brick_boxes.h"
 #include "distance_map.h"
+#include "min_max_octree.h"
 #include "octree.h"
 
 namespace volmark::empty_space_skipping {
@@ -11,6 +12,8 @@ std::unique_ptr<Structure> makeStructure(gpu::Device& device, const Scene& scene
   if (settings.kind == StructureKind::distanceMap || settings.kind == StructureKind::chebyshevMap)
     return std::make_unique<DistanceMap>(device, scene, volume, settings);
   if (settings.kind == StructureKind::bricks) return std::make_unique<BrickBoxes>(device, scene, settings);
+  if (settings.kind == StructureKind::minMaxOctree)
+    return std::make_unique<MinMaxOctree>(device, *scene.volume, settings);
   return std::make_unique<Octree>(device, scene, volume, settings);
 }
 
@@ -42,11 +45,7 @@ const char* macroOf(StructureKind kind) {
 }
 
 glm::ivec3 cellsOf(const Grid& grid, bool voxelBlocks) {
-  return voxelBlocks ? grid.dims : glm::max(grid.dims - 1, glm::ivec3(1));
-}
-
-glm::ivec3 blocksOf(const glm::ivec3& cells, int blockEdge) {
-  return (cells + blockEdge - 1) / blockEdge;
+  return voxelBlocks ? grid.dims : parts::cellsOf(grid);
 }
 
 BuildConstants buildConstants(const Scene& scene, const gpu::VolumeTexture& volume, const StructureSettings& settings) {
@@ -63,21 +62,13 @@ BuildConstants buildConstants(const Scene& scene, const gpu::VolumeTexture& volu
   BuildConstants constants{};
   constants.dims = grid.dims;
   constants.blockEdge = settings.blockEdge;
-  constants.blocks = blocksOf(cellsOf(grid, settings.voxelBlocks), settings.blockEdge);
+  constants.blocks = parts::blocksOf(cellsOf(grid, settings.voxelBlocks), glm::ivec3(settings.blockEdge));
   constants.rawScale = static_cast<float>(largest);
   constants.scalarScale = largest > 0 ? static_cast<float>(volume.scale() / largest) : volume.scale();
   constants.scalarBias = volume.bias();
   constants.bits = settings.bits;
   constants.voxelBlocks = settings.voxelBlocks ? 1 : 0;
   return constants;
-}
-
-bool isCooperative(int blockEdge) {
-  return blockEdge >= 16;
-}
-
-glm::uvec3 buildGroups(const glm::ivec3& blocks, bool cooperative) {
-  return cooperative ? glm::uvec3(blocks) : glm::uvec3((blocks + kBuildGroup - 1) / kBuildGroup);
 }
 
 gpu::BufferRange visibleBuffer(gpu::Commands& commands, const VisibleScalars& visible) {

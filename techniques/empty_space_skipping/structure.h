@@ -1,6 +1,7 @@
 // What tells a ray where nothing is: the part of a technique that differs.
 #pragma once
 
+#include "parts/min_max_grid.h"
 #include "shared.h"
 #include "visible_scalars.h"
 #include "volmark/gpu/commands.h"
@@ -68,16 +69,8 @@ const char* macroOf(StructureKind kind);
 /// Cells along each axis, at least one: what blocks are made of. With `voxelBlocks`, voxels.
 glm::ivec3 cellsOf(const Grid& grid, bool voxelBlocks);
 
-/// Blocks of `blockEdge` along each axis: rounded up.
-glm::ivec3 blocksOf(const glm::ivec3& cells, int blockEdge);
-
 /// What the builders have to know of a volume.
 BuildConstants buildConstants(const Scene& scene, const gpu::VolumeTexture& volume, const StructureSettings& settings);
-
-/// Blocks that are large enough for a workgroup of invocations.
-bool isCooperative(int blockEdge);
-/// Workgroups for a grid of blocks, one a block or one an invocation.
-glm::uvec3 buildGroups(const glm::ivec3& blocks, bool cooperative);
 
 /// A storage buffer with the sums of a transfer function, of this frame.
 gpu::BufferRange visibleBuffer(gpu::Commands& commands, const VisibleScalars& visible);

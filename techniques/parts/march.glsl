@@ -1,4 +1,5 @@
 // The ray of one invocation and the samples along it, for all ray marchers.
+// Macro: FRAGMENT, in fragment shaders.
 #ifndef PARTS_MARCH_GLSL
 #define PARTS_MARCH_GLSL
 
@@ -11,7 +12,9 @@
 #include <volmark/view.glsl>
 #include <volmark/volume.glsl>
 
+#ifndef FRAGMENT
 layout(local_size_x = kGroupSize, local_size_y = kGroupSize) in;
+#endif
 
 layout(constant_id = kIdShaderFiltering) const bool kShaderFiltering = false;
 layout(constant_id = kIdShadingModel) const uint kShadingModel = 0u;
@@ -20,8 +23,13 @@ layout(constant_id = kIdCounting) const bool kCounting = false;
 
 VOLMARK_FRAME(kBindingFrame)
 layout(set = 0, binding = kBindingVolume) uniform sampler3D volume;
+#ifdef FRAGMENT
+layout(location = 0) out vec4 colorOutput;
+layout(location = 1) out float distanceOutput;
+#else
 layout(set = 0, binding = kBindingColor, rgba16f) uniform writeonly image2DArray colorImage;
 layout(set = 0, binding = kBindingDistance, r32f) uniform writeonly image2DArray distanceImage;
+#endif
 VOLMARK_COUNTERS(kBindingCounters)
 layout(set = 0, binding = kBindingSteps, r32f) uniform writeonly image2DArray stepsImage;
 layout(push_constant, scalar) uniform MarchBlock {
@@ -134,18 +142,33 @@ ivec3 texelIn(ivec2 pixel, uint view) {
 
 // `distance` along the view direction, +infinity if there is no surface. `samples` are for counting frames.
 void writePixel(ivec2 pixel, uint view, vec4 color, float distance, uint samples) {
+#ifdef FRAGMENT
+  colorOutput = color;
+  distanceOutput = distance;
+#else
   imageStore(colorImage, texelIn(pixel, view), color);
   imageStore(distanceImage, texelIn(pixel, view), vec4(distance));
+#endif
   if (kCounting) imageStore(stepsImage, texelIn(pixel, view), vec4(samples));
+}
+
+// All invocations name the same counter. Helper invocations of fragment shaders may take part in what a subgroup does; what
+// they add alone is dropped.
+void countUp(uint counter, uint amount) {
+#ifdef FRAGMENT
+  addToCounter(counter, amount);
+#else
+  addToCounterBySubgroup(counter, amount);
+#endif
 }
 
 // Adds the work of one ray; every invocation calls it, with zeros if its ray misses.
 void countRay(uint samples, bool entered, bool ended, uint gradients) {
   if (!kCounting) return;
-  addToCounterBySubgroup(kCounterSamples, samples);
-  addToCounterBySubgroup(kCounterRays, entered ? 1u : 0u);
-  addToCounterBySubgroup(kCounterEnded, ended ? 1u : 0u);
-  addToCounterBySubgroup(kCounterGradients, gradients);
+  countUp(kCounterSamples, samples);
+  countUp(kCounterRays, entered ? 1u : 0u);
+  countUp(kCounterEnded, ended ? 1u : 0u);
+  countUp(kCounterGradients, gradients);
 }
 
 #endif

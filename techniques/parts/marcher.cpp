@@ -1,6 +1,7 @@
 #include "parts/marcher.h"
 
 #include "volmark/gpu/frame_constants.h"
+#include "volmark/gpu/rendering.h"
 #include "volmark/gpu/target.h"
 
 #include <algorithm>
@@ -27,11 +28,19 @@ gpu::PipelineLayoutDescription layoutOf(const std::vector<VkDescriptorType>& own
   return {.bindings = std::move(bindings), .pushConstantBytes = sizeof(MarchConstants)};
 }
 
-std::uint32_t layersOf(const std::vector<View>& views) {
-  std::uint32_t layers = 0;
-  for (std::size_t i = 0; i < views.size(); ++i)
-    layers |= static_cast<std::uint32_t>(views[i].layer) << (8 * i);
-  return layers;
+/// One triangle over the whole picture of each view.
+void drawViews(gpu::Commands& commands, const gpu::Pipeline& pipeline, const Frame& frame,
+               std::span<const gpu::Resource> resources, MarchConstants constants) {
+  for (std::size_t i = 0; i < frame.inputs.views.size(); ++i) {
+    const auto layer = static_cast<std::uint32_t>(frame.inputs.views[i].layer);
+    constants.view = static_cast<std::uint32_t>(i);
+    const gpu::Rendering rendering(commands,
+                                   {.size = {frame.target->width, frame.target->height},
+                                    .colors = {{.view = frame.target->color.layerView(layer), .clear = true},
+                                               {.view = frame.target->distance.layerView(layer), .clear = true}}});
+    commands.bind(pipeline, resources, gpu::bytesOf(constants));
+    vkCmdDraw(commands.handle(), 3, 1, 0, 0);
+  }
 }
 
 } // namespace
@@ -60,6 +69,16 @@ gpu::Pipeline Marcher::makePipeline(const Preparation& preparation, MarcherDescr
       .set(kIdShadingModel, static_cast<std::uint32_t>(preparation.scene.shading.model))
       .set(kIdJitter, preparation.parameters.boolean("jitter"))
       .set(kIdCounting, counting);
+  if (description.isFragment) {
+    description.shader.stage = VK_SHADER_STAGE_FRAGMENT_BIT;
+    description.shader.macros.emplace_back("FRAGMENT", "1");
+    gpu::GraphicsPipelineDescription graphics{.name = description.shader.path + (counting ? " counting" : "")};
+    graphics.shaders = {{"parts/full_screen.vert.glsl", VK_SHADER_STAGE_VERTEX_BIT, {}}, description.shader};
+    graphics.layout = layoutOf(description.own);
+    graphics.specialisation = description.variant;
+    graphics.colorFormats = {gpu::kColorFormat, gpu::kDepthFormat};
+    return {*preparation.device, graphics};
+  }
   return {*preparation.device,
           gpu::ComputePipelineDescription{.name = description.shader.path + (counting ? " counting" : ""),
                                           .shader = description.shader,
@@ -101,8 +120,20 @@ void Marcher::dispatch(const MarchPipelines& pipelines, const Frame& frame, std:
                                           m_counters.range(),
                                           gpu::StorageImage{frame.target->steps.view()}};
   resources.insert(resources.end(), own.begin(), own.end());
-  commands.dispatch(frame.counting ? pipelines.counting : pipelines.timed, resources, gpu::bytesOf(constants), groups);
-  if (frame.counting) commands.barrier(gpu::kComputeWrite, gpu::kHostRead);
+  const gpu::Pipeline& pipeline = frame.counting ? pipelines.counting : pipelines.timed;
+  if (pipeline.bindPoint() == VK_PIPELINE_BIND_POINT_COMPUTE)
+    commands.dispatch(pipeline, resources, gpu::bytesOf(constants), groups);
+  else
+    drawViews(commands, pipeline, frame, resources, constants);
+  if (frame.counting)
+    commands.barrier({VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_WRITE_BIT}, gpu::kHostRead);
+}
+
+std::uint32_t layersOf(const std::vector<View>& views) {
+  std::uint32_t layers = 0;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    layers |= static_cast<std::uint32_t>(views[i].layer) << (8 * i);
+  return layers;
 }
 
 ParameterDescriptor stepParameter(double value) {

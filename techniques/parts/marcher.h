@@ -22,6 +22,8 @@ struct MarcherDescription {
   gpu::ShaderSource shader;
   gpu::Specialisation variant;       ///< the technique's own constants
   std::vector<VkDescriptorType> own; ///< of bindings kBindingOwn and following
+  /// The shader is a fragment shader (with the macro FRAGMENT), drawn over the whole picture of each view.
+  bool isFragment = false;
 };
 
 struct MarchPipelines {
@@ -63,6 +65,9 @@ private:
   gpu::VolumeTexture m_volume;
   gpu::CounterBuffer m_counters;
 };
+
+/// Output layer of view i in byte i.
+std::uint32_t layersOf(const std::vector<View>& views);
 
 /// The parameters that all ray marchers have: step, filtering, jitter.
 ParameterDescriptor stepParameter(double value);

@@ -7,7 +7,9 @@
 
 #include <cstdint>
 namespace volmark::parts {
+using glm::ivec3;
 using glm::uvec4;
+using glm::vec2;
 using glm::vec3;
 using uint = std::uint32_t;
 #endif
@@ -66,10 +68,26 @@ struct MarchConstants {
   float shadowBias;    // world units
   int shadowSize;      // texels along each side
   uvec4 hidden;        // segments, a bit each
+  uint view;           // fragment shaders: the one that is drawn
+};
+
+// Ranges of voxels: bindings, specialisation constants.
+const int kBindingVoxels = 0; // the volume; for parents: the level below
+const int kBindingNodes = 1;  // what is written
+const int kIdCooperative = 0; // a workgroup, instead of an invocation, makes a block
+const int kRangeGroup = 4;    // invocations of a workgroup along each axis
+
+struct MinMaxConstants {
+  ivec3 dims;       // voxels
+  ivec3 blockCells; // of a block, along each axis
+  ivec3 blocks;     // beyond them nodes hold `nothing`
+  ivec3 nodes;      // to be written
+  vec2 nothing;     // a range that is neutral
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(MarchConstants) == 104);
+static_assert(sizeof(MarchConstants) == 108);
+static_assert(sizeof(MinMaxConstants) == 56);
 } // namespace volmark::parts
 #endif
 

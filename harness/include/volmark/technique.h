@@ -6,6 +6,7 @@
 #include "volmark/picture.h"
 #include "volmark/recorder.h"
 #include "volmark/scene.h"
+#include "volmark/surface_mesh.h"
 
 #include <cstdint>
 #include <memory>
@@ -119,6 +120,10 @@ public:
 
   /// Work of the last counting frame, in the order of TechniqueInfo::counters. Called after it has finished.
   virtual std::vector<CounterValue> counters() const { return {}; }
+
+  /// The surface that the last frame drew, of techniques that make a mesh of it; nothing otherwise. Not while a frame
+  /// is pending; slow.
+  virtual std::optional<SurfaceMesh> surface() const { return std::nullopt; }
 
   /// Device memory (host memory if !needsGpu) by resource. For GPU techniques the total equals what prepare,
   /// update and draw added to the device's ledger.

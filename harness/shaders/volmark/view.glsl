@@ -32,16 +32,17 @@ float distanceAlongView(ViewConstants view, vec3 world) {
   return dot(world - view.position, view.forward);
 }
 
-// Vulkan clip coordinates (y down, depth 0 at `near`, 1 at `far`) of a point, for rasterising techniques; w is
-// the distance along the view direction.
-vec4 clipPosition(ViewConstants view, vec3 world, float near, float far) {
-  vec3 offset = world - view.position;
-  float x = dot(offset, view.right);
-  float y = dot(offset, view.up);
-  float w = dot(offset, view.forward);
+// Vulkan clip coordinates (y down) of a point, for rasterising techniques; w is the distance along the view direction.
+// Depth is near / w: 1 at `near`, falling to 0 far away, so that floats resolve all distances alike and nothing is cut off
+// at the far end. Nearer means greater. The same bits in every shader.
+vec4 clipPosition(ViewConstants view, vec3 world, float near) {
+  precise vec3 offset = world - view.position;
+  precise float x = dot(offset, view.right);
+  precise float y = dot(offset, view.up);
+  precise float w = dot(offset, view.forward);
   vec4 t = view.tangents;
-  return vec4((2.0 * x - (t.x + t.y) * w) / (t.y - t.x), ((t.z + t.w) * w - 2.0 * y) / (t.w - t.z),
-              far * (w - near) / (far - near), w);
+  precise vec4 clip = vec4((2.0 * x - (t.x + t.y) * w) / (t.y - t.x), ((t.z + t.w) * w - 2.0 * y) / (t.w - t.z), near, w);
+  return clip;
 }
 
 #endif

@@ -1,5 +1,6 @@
 #include "gpu_test.h"
 #include "volmark/error.h"
+#include "volmark/gpu/rendering.h"
 #include "volmark/gpu/target.h"
 
 #include <array>
@@ -20,24 +21,14 @@ protected:
     Commands commands(device());
     commands.begin();
     target.initialise(commands);
-    VkRenderingAttachmentInfo attachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-    attachment.imageView = target.color.view();
-    attachment.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
-    attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    attachment.clearValue.color = {{clear.r, clear.g, clear.b, clear.a}};
-    VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
-    info.renderArea.extent = {kSide, kSide};
-    info.layerCount = viewMask == 0 ? static_cast<std::uint32_t>(target.views) : 1;
-    info.viewMask = viewMask;
-    info.colorAttachmentCount = 1;
-    info.pColorAttachments = &attachment;
-    vkCmdBeginRendering(commands.handle(), &info);
-    const VkViewport viewport{0, 0, kSide, kSide, 0, 1};
-    vkCmdSetViewport(commands.handle(), 0, 1, &viewport);
-    vkCmdSetScissor(commands.handle(), 0, 1, &info.renderArea);
-    record(commands);
-    vkCmdEndRendering(commands.handle());
+    {
+      const Rendering rendering(commands,
+                                {.size = {kSide, kSide},
+                                 .layers = static_cast<std::uint32_t>(target.views),
+                                 .viewMask = viewMask,
+                                 .colors = {{.view = target.color.view(), .clear = true, .value = clear}}});
+      record(commands);
+    }
     commands.submit();
     commands.wait();
     return readBack(device(), target, 0);

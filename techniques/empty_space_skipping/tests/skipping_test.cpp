@@ -1,5 +1,5 @@
 // Skipping changes no pixel: every method against dvr_raymarch, which skips nothing.
-#include "random_scenes.h"
+#include "parts/testing/random_scenes.h"
 #include "ray_march/dvr_raymarch.h"
 #include "skipping_technique.h"
 #include "volmark/gpu/shader.h"
@@ -125,7 +125,7 @@ std::vector<Case> casesOf(const Method& method) {
   return {kCases[index % std::size(kCases)], kCases[(3 * index + 5) % std::size(kCases)]};
 }
 
-Light randomLight(Numbers& numbers, bool spot) {
+Light randomLight(parts::Numbers& numbers, bool spot) {
   const glm::dvec3 direction(numbers.between(-1, 1), numbers.between(-1, 1), numbers.between(0.1, 1));
   return {
       .headlight = !spot, .direction = glm::normalize(direction), .spot = spot, .distance = numbers.between(1.2, 5)};
@@ -137,15 +137,16 @@ TEST_P(Skipping, ChangesNoPixel) {
   const Method& method = GetParam();
   if (method.factory == dvrRayQuery && !parts::device().facts().rayQuery) GTEST_SKIP() << "no ray queries";
   constexpr int kFunctions = 16; // of each case
-  Numbers numbers(7);
+  parts::Numbers numbers(7);
   int skippedSomething = 0;
   for (const Case& c : casesOf(method)) {
-    Scene scene = parts::makeScene(randomVolume(numbers, c.dims, c.type, c.spacing),
+    Scene scene = parts::makeScene(parts::randomVolume(numbers, c.dims, c.type, c.spacing),
                                    c.lit ? ShadingModel::ggx : ShadingModel::none);
     scene.shading.shadows = c.lit;
     if (c.segmented)
-      scene.volume = std::make_shared<const Volume>(scene.volume->withLabels(randomLabels(numbers, c.dims, c.spacing)));
-    if (c.beyond) scene.functionBeyond = randomTransferFunction(numbers);
+      scene.volume =
+          std::make_shared<const Volume>(scene.volume->withLabels(parts::randomLabels(numbers, c.dims, c.spacing)));
+    if (c.beyond) scene.functionBeyond = parts::randomTransferFunction(numbers);
     Values march = c.march;
     march.emplace_back("shadow_resolution", std::int64_t(48));
     march.emplace_back("preintegrated_size", std::int64_t(64));
@@ -159,12 +160,12 @@ TEST_P(Skipping, ChangesNoPixel) {
     Session skipping(factory, scene, parameters, size);
     for (int i = 0; i < kFunctions; ++i) {
       const Grid& grid = scene.volume->grid();
-      const FrameInputs inputs{.views = {randomView(numbers, grid, kWidth, kHeight)},
-                               .transferFunction = randomTransferFunction(numbers),
-                               .clippingPlanes = randomPlanes(numbers, grid),
+      const FrameInputs inputs{.views = {parts::randomView(numbers, grid, kWidth, kHeight)},
+                               .transferFunction = parts::randomTransferFunction(numbers),
+                               .clippingPlanes = parts::randomPlanes(numbers, grid),
                                .light = randomLight(numbers, c.lit),
                                .hiddenSegments =
-                                   c.segmented ? randomSegments(numbers) : std::bitset<kMaximumSegments>()};
+                                   c.segmented ? parts::randomSegments(numbers) : std::bitset<kMaximumSegments>()};
       const Drawn expected = plain.draw(inputs, true);
       const Drawn found = skipping.draw(inputs, true);
       const std::string where = fmt::format("{} x {} x {}, function {}", c.dims.x, c.dims.y, c.dims.z, i);
@@ -206,9 +207,9 @@ TEST(BitfieldOctree, SlabsThatStepOverABlockAreDrawn) {
 }
 
 TEST(BitfieldOctree, MoreBitsNeverSkipLess) {
-  Numbers numbers(3);
+  parts::Numbers numbers(3);
   const Scene scene =
-      parts::makeScene(randomVolume(numbers, {48, 40, 44}, ScalarType::uint16, {1, 1, 1}), ShadingModel::none);
+      parts::makeScene(parts::randomVolume(numbers, {48, 40, 44}, ScalarType::uint16, {1, 1, 1}), ShadingModel::none);
   std::vector<std::unique_ptr<Session>> byBits;
   for (const std::int64_t bits : {8, 16, 32, 64, 128})
     byBits.push_back(std::make_unique<Session>(
@@ -217,8 +218,8 @@ TEST(BitfieldOctree, MoreBitsNeverSkipLess) {
         OutputSize{kWidth, kHeight, 1}));
   bool differs = false;
   for (int i = 0; i < 40; ++i) {
-    const FrameInputs inputs{.views = {randomView(numbers, scene.volume->grid(), kWidth, kHeight)},
-                             .transferFunction = randomTransferFunction(numbers)};
+    const FrameInputs inputs{.views = {parts::randomView(numbers, scene.volume->grid(), kWidth, kHeight)},
+                             .transferFunction = parts::randomTransferFunction(numbers)};
     std::vector<std::uint64_t> samples;
     for (const auto& session : byBits)
       samples.push_back(session->draw(inputs, true).counters.at("samples"));
@@ -229,13 +230,13 @@ TEST(BitfieldOctree, MoreBitsNeverSkipLess) {
 }
 
 TEST(BitfieldOctree, TwoEyesEqualTwoPictures) {
-  Numbers numbers(11);
+  parts::Numbers numbers(11);
   const Scene scene =
-      parts::makeScene(randomVolume(numbers, {31, 32, 33}, ScalarType::uint8, {1, 1, 1}), ShadingModel::ggx);
+      parts::makeScene(parts::randomVolume(numbers, {31, 32, 33}, ScalarType::uint8, {1, 1, 1}), ShadingModel::ggx);
   const Grid& grid = scene.volume->grid();
   FrameInputs inputs{
       .views = {parts::lookAtBox(grid, 20, 10, kWidth, kHeight), parts::lookAtBox(grid, 25, 10, kWidth, kHeight)},
-      .transferFunction = randomTransferFunction(numbers)};
+      .transferFunction = parts::randomTransferFunction(numbers)};
   inputs.views[1].layer = 1;
   const Drawn both = parts::drawOnce(dvrBitfieldOctree(), scene, inputs, kWidth, kHeight, {});
   for (std::size_t eye = 0; eye < 2; ++eye) {
@@ -248,11 +249,11 @@ TEST(BitfieldOctree, TwoEyesEqualTwoPictures) {
 }
 
 TEST(BitfieldOctree, StepsArePixelsOfItsCounters) {
-  Numbers numbers(5);
+  parts::Numbers numbers(5);
   const Scene scene =
-      parts::makeScene(randomVolume(numbers, {31, 32, 33}, ScalarType::uint8, {1, 1, 1}), ShadingModel::none);
+      parts::makeScene(parts::randomVolume(numbers, {31, 32, 33}, ScalarType::uint8, {1, 1, 1}), ShadingModel::none);
   const FrameInputs inputs{.views = {parts::lookAtBox(scene.volume->grid(), 20, 10, kWidth, kHeight)},
-                           .transferFunction = randomTransferFunction(numbers)};
+                           .transferFunction = parts::randomTransferFunction(numbers)};
   const Drawn drawn = parts::drawOnce(dvrBitfieldOctree(), scene, inputs, kWidth, kHeight, {}, true);
   double steps = 0;
   for (const float of : drawn.pictures[0].steps)
@@ -261,9 +262,9 @@ TEST(BitfieldOctree, StepsArePixelsOfItsCounters) {
 }
 
 TEST(BitfieldOctree, MemoryIsWhatItAddedToTheLedger) {
-  Numbers numbers(5);
+  parts::Numbers numbers(5);
   const Scene scene =
-      parts::makeScene(randomVolume(numbers, {31, 32, 33}, ScalarType::uint8, {1, 1, 1}), ShadingModel::none);
+      parts::makeScene(parts::randomVolume(numbers, {31, 32, 33}, ScalarType::uint8, {1, 1, 1}), ShadingModel::none);
   for (const Method& method : methods()) {
     const TechniqueFactory factory = method.factory();
     const Session session(factory, scene, parts::withParameters(factory, method.values), {kWidth, kHeight, 1});

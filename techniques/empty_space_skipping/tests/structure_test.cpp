@@ -1,9 +1,10 @@
 // Structures built on the GPU equal plain ones of the CPU, bit for bit, and know of everything that rays can meet.
 #include "brick_boxes.h"
 #include "distance_map.h"
+#include "min_max_octree.h"
 #include "octree.h"
 #include "parts/marcher.h"
-#include "random_scenes.h"
+#include "parts/testing/random_scenes.h"
 #include "volmark/gpu/buffer.h"
 #include "volmark/module.h"
 
@@ -138,8 +139,8 @@ glm::uvec4 binsOfBlock(const Volume& volume, const BuildConstants& build, const 
   return bits;
 }
 
-VisibleScalars randomVisible(Numbers& numbers) {
-  return VisibleScalars(parts::postClassifiedTable(*randomTransferFunction(numbers), 4096, 1));
+VisibleScalars randomVisible(parts::Numbers& numbers) {
+  return VisibleScalars(parts::postClassifiedTable(*parts::randomTransferFunction(numbers), 4096, 1));
 }
 
 template <class Visit> void forNodes(glm::ivec3 size, Visit visit) {
@@ -160,16 +161,17 @@ const Shape kShapes[] = {{{33, 30, 35}, ScalarType::uint8},   {{65, 5, 17}, Scal
 class Bits : public testing::TestWithParam<int> {};
 
 TEST_P(Bits, EqualThoseOfTheCpuOnEveryLevel) {
-  Numbers numbers(21);
+  parts::Numbers numbers(21);
   for (const Shape& shape : kShapes) {
-    const Scene scene = parts::makeScene(randomVolume(numbers, shape.dims, shape.type, {1, 1, 1}), ShadingModel::none);
+    const Scene scene =
+        parts::makeScene(parts::randomVolume(numbers, shape.dims, shape.type, {1, 1, 1}), ShadingModel::none);
     for (const int edge : {2, 4, 16})
       for (const bool voxels : {false, true}) {
         const StructureSettings settings{
             .blockEdge = edge, .bits = GetParam(), .skippedLevels = 0, .voxelBlocks = voxels};
         Built built(scene, settings, {});
         const auto& octree = dynamic_cast<const Octree&>(*built.structure);
-        const OctreeShape& tree = octree.shape();
+        const parts::OctreeShape& tree = octree.shape();
         EXPECT_EQ(tree.initialLevel, tree.rootLevel);
         const std::size_t bytes = static_cast<std::size_t>(GetParam()) / 8;
         std::vector<glm::uvec4> below;
@@ -203,9 +205,9 @@ TEST_P(Bits, EqualThoseOfTheCpuOnEveryLevel) {
 INSTANTIATE_TEST_SUITE_P(All, Bits, testing::Values(8, 16, 32, 64, 128));
 
 TEST(Octree, LabelsAreThoseOfAllVoxelsNearestToABlocksPlaces) {
-  Numbers numbers(24);
+  parts::Numbers numbers(24);
   for (const Shape& shape : kShapes) {
-    const Scene scene = parts::makeScene(randomLabels(numbers, shape.dims, {1, 1, 1}), ShadingModel::none);
+    const Scene scene = parts::makeScene(parts::randomLabels(numbers, shape.dims, {1, 1, 1}), ShadingModel::none);
     const Scene raw{.name = "labels", .volume = scene.volume, .visualisationRange = {0, 255}};
     for (const int edge : {2, 4, 16})
       for (const bool voxels : {false, true}) {
@@ -235,9 +237,10 @@ TEST(Octree, LabelsAreThoseOfAllVoxelsNearestToABlocksPlaces) {
 }
 
 TEST(Octree, RangesAndFlagsEqualThoseOfTheCpu) {
-  Numbers numbers(22);
+  parts::Numbers numbers(22);
   for (const Shape& shape : kShapes) {
-    const Scene scene = parts::makeScene(randomVolume(numbers, shape.dims, shape.type, {1, 1, 1}), ShadingModel::none);
+    const Scene scene =
+        parts::makeScene(parts::randomVolume(numbers, shape.dims, shape.type, {1, 1, 1}), ShadingModel::none);
     const VisibleScalars visible = randomVisible(numbers);
     for (const int edge : {2, 4, 16}) {
       StructureSettings settings{.kind = StructureKind::booleanOctree, .blockEdge = edge, .skippedLevels = 0};
@@ -245,12 +248,12 @@ TEST(Octree, RangesAndFlagsEqualThoseOfTheCpu) {
       settings.kind = StructureKind::minMaxOctree;
       Built ranges(scene, settings, visible);
       const auto& flagTree = dynamic_cast<const Octree&>(*flags.structure);
-      const auto& rangeTree = dynamic_cast<const Octree&>(*ranges.structure);
+      const auto& rangeTree = dynamic_cast<const MinMaxOctree&>(*ranges.structure);
       const glm::ivec3 size = flagTree.shape().leaves;
       const bool isFloat = shape.type == ScalarType::float32;
       const std::size_t bytes = isFloat ? 4 : ranges.constants.rawScale > 255 ? 2 : 1;
       const auto foundFlags = flags.read(flagTree.nodes(), 0, size, 1);
-      const auto foundRanges = ranges.read(rangeTree.nodes(), 0, size, 2 * bytes);
+      const auto foundRanges = ranges.read(rangeTree.grid().image(), 0, size, 2 * bytes);
       const auto root =
           flags.read(flagTree.nodes(), static_cast<std::uint32_t>(flagTree.shape().rootLevel), {1, 1, 1}, 1);
       bool any = false;
@@ -293,9 +296,10 @@ TEST(Octree, RangesAndFlagsEqualThoseOfTheCpu) {
 
 TEST(Bricks, AreThoseThatShowInMortonOrder) {
   if (!parts::device().facts().rayQuery) GTEST_SKIP() << "no ray queries";
-  Numbers numbers(25);
+  parts::Numbers numbers(25);
   for (const Shape& shape : kShapes) {
-    const Scene scene = parts::makeScene(randomVolume(numbers, shape.dims, shape.type, {1, 1, 1}), ShadingModel::none);
+    const Scene scene =
+        parts::makeScene(parts::randomVolume(numbers, shape.dims, shape.type, {1, 1, 1}), ShadingModel::none);
     const VisibleScalars visible = randomVisible(numbers);
     for (const int edge : {2, 8}) {
       Built built(scene, {.kind = StructureKind::bricks, .blockEdge = edge}, visible);
@@ -305,7 +309,7 @@ TEST(Bricks, AreThoseThatShowInMortonOrder) {
         return std::any_of(boxes.begin(), boxes.end(), [&](const BrickBox& box) { return placeOf(box) == brick; });
       };
       std::size_t occupied = 0;
-      forNodes(blocksOf(cellsOf(scene.volume->grid(), false), edge), [&](glm::ivec3 brick) {
+      forNodes(parts::blocksOf(cellsOf(scene.volume->grid(), false), glm::ivec3(edge)), [&](glm::ivec3 brick) {
         Span block;
         forCells(cellsOf(scene.volume->grid(), false), brick, edge, [&](glm::ivec3 cell) {
           const Span span = spanOfCell(*scene.volume, built.constants, cell, false);
@@ -349,9 +353,10 @@ std::optional<int> gapBetween(StructureKind kind, int octant, glm::ivec3 from, g
 class Distances : public testing::TestWithParam<StructureKind> {};
 
 TEST_P(Distances, EqualThoseOfTheCpu) {
-  Numbers numbers(23);
+  parts::Numbers numbers(23);
   for (const Shape& shape : kShapes) {
-    const Scene scene = parts::makeScene(randomVolume(numbers, shape.dims, shape.type, {1, 1, 1}), ShadingModel::none);
+    const Scene scene =
+        parts::makeScene(parts::randomVolume(numbers, shape.dims, shape.type, {1, 1, 1}), ShadingModel::none);
     const VisibleScalars visible = randomVisible(numbers);
     for (const int edge : {2, 4, 16}) {
       Built built(scene, {.kind = GetParam(), .blockEdge = edge}, visible);
@@ -398,9 +403,9 @@ INSTANTIATE_TEST_SUITE_P(All, Distances, testing::Values(StructureKind::distance
 // --- Transfer functions as bits ------------------------------------------------------------------------------
 
 TEST(VisibleScalars, MasksHoldEveryVisibleScalar) {
-  Numbers numbers(24);
+  parts::Numbers numbers(24);
   for (int i = 0; i < 50; ++i) {
-    const auto function = randomTransferFunction(numbers);
+    const auto function = parts::randomTransferFunction(numbers);
     for (const bool preintegrated : {false, true}) {
       const parts::TransferTable table =
           preintegrated ? parts::preintegratedTable(*function, 64, 1) : parts::postClassifiedTable(*function, 4096, 1);
@@ -421,7 +426,7 @@ TEST(VisibleScalars, MasksHoldEveryVisibleScalar) {
 }
 
 TEST(VisibleScalars, WiderMasksNest) {
-  Numbers numbers(25);
+  parts::Numbers numbers(25);
   for (int i = 0; i < 200; ++i) {
     const VisibleScalars visible = randomVisible(numbers);
     for (const int bits : {8, 16, 32, 64}) {

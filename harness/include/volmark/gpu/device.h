@@ -36,14 +36,22 @@ struct DeviceFacts {
   double timestampPeriodNs = 0;        ///< 0: the queue has no timestamps
   std::uint32_t timestampValidBits = 0;
 
-  bool meshShader = false; ///< task and mesh shaders
+  bool meshShader = false;                      ///< task and mesh shaders; their limits are 0 without
+  std::uint32_t maximumTaskWorkgroups[3]{};     ///< of one draw, along each dimension
+  std::uint32_t maximumTotalTaskWorkgroups = 0; ///< their product
+  std::uint32_t maximumMeshVertices = 0;        ///< that one workgroup writes
+  std::uint32_t maximumMeshPrimitives = 0;
+  bool representativeFragmentTest = false; ///< VK_NV_representative_fragment_test
+  std::uint32_t subPixelBits = 0;          ///< vertices snap to 2^-bits of a pixel
   bool multiview = false;
-  bool int8 = false;  ///< arithmetic and storage buffers
-  bool int16 = false; ///< arithmetic and storage buffers
+  bool vertexLayer = false; ///< vertex shaders write gl_Layer
+  bool int8 = false;        ///< arithmetic and storage buffers
+  bool int16 = false;       ///< arithmetic and storage buffers
   bool int64 = false;
   bool int64BufferAtomics = false;
   bool float64 = false;
   bool fragmentStores = false; ///< storage writes and atomics in fragment shaders
+  bool vertexStores = false;   ///< and in those before rasterization
   bool subgroupSizeControl = false;
   bool rayQuery = false; ///< with acceleration structures
   bool pipelineStatistics = false;

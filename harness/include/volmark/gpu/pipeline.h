@@ -57,6 +57,9 @@ struct GraphicsPipelineDescription {
   bool alphaToCoverage = false;
   Blending blending = Blending::none;
   std::uint32_t viewMask = 0; ///< multiview; vertex pipelines only
+  /// Where the device has it: of each primitive at least one fragment that passes is shaded, and the rest may be left
+  /// out.
+  bool representativeFragmentTest = false;
 };
 
 /// Move-only owner of a pipeline and its layout. Viewport and scissor are dynamic in graphics pipelines.

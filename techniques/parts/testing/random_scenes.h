@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-namespace volmark::empty_space_skipping {
+namespace volmark::parts {
 
 /// Uniform in [0,1), by a counter.
 class Numbers {
@@ -38,4 +38,4 @@ View randomView(Numbers& numbers, const Grid& grid, int width, int height);
 /// None, one or two planes through the volume.
 std::vector<ClippingPlane> randomPlanes(Numbers& numbers, const Grid& grid);
 
-} // namespace volmark::empty_space_skipping
+} // namespace volmark::parts

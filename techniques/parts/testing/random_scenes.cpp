@@ -1,9 +1,9 @@
-#include "random_scenes.h"
+#include "parts/testing/random_scenes.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace volmark::empty_space_skipping {
+namespace volmark::parts {
 
 double Numbers::unit() {
   // SplitMix64.
@@ -25,7 +25,7 @@ std::shared_ptr<const Volume> randomVolume(Numbers& numbers, glm::ivec3 dims, Sc
     blob = {{numbers.unit(), numbers.unit(), numbers.unit()}, numbers.between(0.08, 0.35), numbers.between(0.2, 1)};
   const double ground = numbers.between(0, 0.4);
   const double noise = numbers.unit() < 0.4 ? numbers.between(0, 0.3) : 0;
-  return parts::makeVolume(
+  return makeVolume(
       [&](const glm::dvec3& position) {
         double value = ground;
         for (const Blob& blob : blobs) {
@@ -88,8 +88,8 @@ View randomView(Numbers& numbers, const Grid& grid, int width, int height) {
     const glm::dvec3 target = eye + glm::dvec3(numbers.unit() - 0.5, numbers.unit() - 0.5, numbers.unit() + 0.1);
     return {.pose = Pose::lookAt(eye, target), .frustum = Frustum::symmetric(70, width, height)};
   }
-  if (numbers.unit() < 0.2) return parts::lookAtBox(grid, 0, 0, width, height); // rays along an axis
-  return parts::lookAtBox(grid, numbers.between(0, 360), numbers.between(-80, 80), width, height);
+  if (numbers.unit() < 0.2) return lookAtBox(grid, 0, 0, width, height); // rays along an axis
+  return lookAtBox(grid, numbers.between(0, 360), numbers.between(-80, 80), width, height);
 }
 
 std::vector<ClippingPlane> randomPlanes(Numbers& numbers, const Grid& grid) {
@@ -102,4 +102,4 @@ std::vector<ClippingPlane> randomPlanes(Numbers& numbers, const Grid& grid) {
   return planes;
 }
 
-} // namespace volmark::empty_space_skipping
+} // namespace volmark::parts

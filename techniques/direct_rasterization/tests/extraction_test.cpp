@@ -1,0 +1,254 @@
+// What task and mesh shaders extract: counts and list cuts against the CPU model, pictures against the reference.
+#include "mesh_shader_isosurface.h"
+#include "parts/testing/random_scenes.h"
+#include "parts/testing/surface_model.h"
+#include "parts/testing/surface_pictures.h"
+#include "reference/reference.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace volmark::direct_rasterization {
+namespace {
+
+using Values = std::vector<std::pair<std::string, ParameterValue>>;
+using parts::Drawn;
+using parts::Numbers;
+using parts::Session;
+
+constexpr int kWidth = 72;
+constexpr int kHeight = 64;
+
+#define REQUIRE_MESH_SHADERS()                                                                                         \
+  if (!parts::device().facts().meshShader) GTEST_SKIP() << "no mesh shaders"
+
+struct Case {
+  const char* block;
+  glm::ivec3 cells;
+  std::int64_t vertexLimit;
+  glm::ivec3 dims;
+  ScalarType type;
+};
+
+void expectCounts(const Drawn& drawn, const parts::SurfaceCounts& expected, const std::string& where) {
+  EXPECT_EQ(drawn.counters.at("blocks"), expected.blocks) << where;
+  EXPECT_EQ(drawn.counters.at("cells"), expected.cells) << where;
+  EXPECT_EQ(drawn.counters.at("vertices"), expected.vertices) << where;
+  EXPECT_EQ(drawn.counters.at("triangles"), expected.triangles) << where;
+  EXPECT_EQ(drawn.counters.at("lists"), expected.lists) << where;
+}
+
+TEST(Extraction, CountsAndListCutsEqualTheCpuModel) {
+  REQUIRE_MESH_SHADERS();
+  const Case cases[] = {{"8x8x4", {8, 8, 4}, 96, {33, 29, 31}, ScalarType::uint8},
+                        {"16x4x4", {16, 4, 4}, 32, {40, 18, 9}, ScalarType::int16},
+                        {"8x4x4", {8, 4, 4}, 256, {17, 21, 19}, ScalarType::float32},
+                        {"4x4x4", {4, 4, 4}, 64, {30, 11, 14}, ScalarType::int8},
+                        {"8x8x4", {8, 8, 4}, 48, {9, 9, 5}, ScalarType::uint16},
+                        {"8x8x4", {8, 8, 4}, 96, {2, 2, 2}, ScalarType::uint8}};
+  Numbers numbers(17);
+  for (const Case& c : cases) {
+    const auto volume = parts::makeVolume([&](const glm::dvec3&) { return numbers.unit(); }, c.dims, c.type);
+    for (const bool noise : {true, false}) {
+      const Scene scene = parts::makeScene(noise ? volume : parts::randomVolume(numbers, c.dims, c.type, glm::dvec3(1)),
+                                           ShadingModel::none);
+      const Values values{{"culling", false},
+                          {"block", std::string(c.block)},
+                          {"granularity", std::string("block")},
+                          {"vertex_limit", c.vertexLimit}};
+      Session session(meshShaderIsosurface(), scene, parts::withParameters(meshShaderIsosurface(), values),
+                      {kWidth, kHeight, 1});
+      const View view = parts::lookAtBox(scene.volume->grid(), 20, 30, kWidth, kHeight);
+      for (const double isovalue : {0.5, 0.03, numbers.unit(), 0.0, 1.0}) {
+        const Drawn drawn = session.draw(parts::makeInputs(view, isovalue), true);
+        expectCounts(drawn, parts::countSurface(scene, isovalue, c.cells, static_cast<int>(c.vertexLimit)),
+                     fmt::format("{} {} {} {}", c.block, c.vertexLimit, noise, isovalue));
+      }
+    }
+  }
+}
+
+TEST(Extraction, EveryCaseOfACellIsTheTables) {
+  REQUIRE_MESH_SHADERS();
+  // 256 cells of two voxels in each direction, apart from each other.
+  std::vector<std::byte> voxels;
+  const glm::ivec3 dims(16 * 4, 16 * 4, 2);
+  for (int z = 0; z < dims.z; ++z)
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x) {
+        const int inside = x / 4 + 16 * (y / 4);
+        const bool isCorner = x % 4 < 2 && y % 4 < 2;
+        const int corner = (x % 4) | (y % 4) << 1 | z << 2;
+        voxels.push_back(isCorner && (inside >> corner & 1) != 0 ? std::byte{200} : std::byte{0});
+      }
+  const Scene scene = parts::makeScene(
+      std::make_shared<Volume>("cases", Grid{dims, glm::dvec3(1)}, ScalarType::uint8, std::move(voxels)),
+      ShadingModel::none);
+  for (const double isovalue : {0.5, 1.0}) {
+    const FrameInputs inputs =
+        parts::makeInputs(parts::lookAtBox(scene.volume->grid(), 10, 20, kWidth, kHeight), isovalue);
+    const Drawn drawn =
+        parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {{"culling", false}}, true);
+    expectCounts(drawn, parts::countSurface(scene, isovalue, {8, 8, 4}, 96), fmt::format("{}", isovalue));
+  }
+}
+
+TEST(Extraction, AnIsovalueAmongTheVoxelsIsInsideAndOneBeyondThemIsNowhere) {
+  REQUIRE_MESH_SHADERS();
+  // Voxels 0 to 250 in a range of 0 to 250: the isovalue 100 / 250 is a voxel's own value.
+  std::vector<std::byte> voxels;
+  const glm::ivec3 dims(26, 26, 26);
+  for (int i = 0; i < dims.x * dims.y * dims.z; ++i)
+    voxels.push_back(static_cast<std::byte>(10 * (i % 26)));
+  Scene scene = parts::makeScene(
+      std::make_shared<Volume>("slope", Grid{dims, glm::dvec3(1)}, ScalarType::uint8, std::move(voxels)),
+      ShadingModel::none);
+  Session session(meshShaderIsosurface(), scene, parts::withParameters(meshShaderIsosurface(), {{"culling", false}}),
+                  {kWidth, kHeight, 1});
+  const View view = parts::lookAtBox(scene.volume->grid(), -60, 20, kWidth, kHeight);
+  for (int voxel = 10; voxel <= 250; voxel += 10) {
+    const Drawn drawn = session.draw(parts::makeInputs(view, voxel / 250.0), true);
+    expectCounts(drawn, parts::countSurface(scene, voxel / 250.0, {8, 8, 4}, 96), fmt::format("{}", voxel));
+    EXPECT_EQ(drawn.counters.at("cells"), 25u * 25u);
+  }
+  for (const double isovalue : {1.00001, 0.0}) {
+    const Drawn drawn = session.draw(parts::makeInputs(view, isovalue), true);
+    EXPECT_EQ(drawn.counters.at("blocks"), 0u);
+  }
+}
+
+TEST(Extraction, MoreBlocksThanARowOfWorkgroups) {
+  REQUIRE_MESH_SHADERS();
+  // One voxel inside each block: more occupied ones than kDispatchWidth.
+  const glm::ivec3 dims(8 * 65 + 1, 8 * 64 + 1, 4 * 16 + 1);
+  const auto count =
+      static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z);
+  std::vector<std::byte> voxels(count);
+  for (int z = 2; z < dims.z; z += 4)
+    for (int y = 4; y < dims.y; y += 8)
+      for (int x = 4; x < dims.x; x += 8)
+        voxels[(static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(dims.x) +
+               static_cast<std::size_t>(x)] = std::byte{255};
+  const Scene scene = parts::makeScene(
+      std::make_shared<Volume>("dots", Grid{dims, glm::dvec3(1)}, ScalarType::uint8, std::move(voxels)),
+      ShadingModel::none);
+  const FrameInputs inputs = parts::makeInputs(parts::lookAtBox(scene.volume->grid(), 10, 20, kWidth, kHeight));
+  const Drawn drawn =
+      parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {{"culling", false}}, true);
+  const std::uint64_t blocks = 65 * 64 * 16;
+  EXPECT_EQ(drawn.counters.at("blocks"), blocks);
+  EXPECT_EQ(drawn.counters.at("cells"), 8 * blocks);
+  EXPECT_EQ(drawn.counters.at("triangles"), 8 * blocks);
+  EXPECT_EQ(drawn.counters.at("lists"), blocks);
+}
+
+class ScalarTypes : public testing::TestWithParam<ScalarType> {};
+
+TEST_P(ScalarTypes, PicturesMatchTheReference) {
+  REQUIRE_MESH_SHADERS();
+  const Scene scene = parts::makeScene(parts::makeVolume(parts::ripples, {48, 40, 36}, GetParam(), {0.8, 1.1, 1.4}),
+                                       ShadingModel::gooch);
+  for (const double isovalue : {0.35, 0.6}) {
+    const FrameInputs inputs =
+        parts::makeInputs(parts::lookAtBox(scene.volume->grid(), 33, 21, kWidth, kHeight), isovalue);
+    const Drawn drawn = parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {});
+    parts::expectNearReference(drawn.pictures[0], scene, inputs);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ScalarTypes,
+                         testing::Values(ScalarType::int8, ScalarType::uint8, ScalarType::int16, ScalarType::uint16,
+                                         ScalarType::float32),
+                         [](const auto& type) { return std::string(nameOf(type.param)); });
+
+TEST(Extraction, ClippingPlanesAndEyesInsideShowWhatTheReferenceShows) {
+  REQUIRE_MESH_SHADERS();
+  Scene scene =
+      parts::makeScene(parts::makeVolume(parts::ball, glm::ivec3(48), ScalarType::uint16), ShadingModel::lambert);
+  FrameInputs inputs = parts::makeInputs(parts::lookAtBox(scene.volume->grid(), 33, 21, kWidth, kHeight), 0.3);
+  inputs.light = {.headlight = false, .direction = glm::normalize(glm::dvec3(0.2, 1, 0.4))};
+  inputs.clippingPlanes = {{glm::normalize(glm::dvec3(-0.6, -0.3, -1)), -4.0}, {{0, -1, 0}, -10.0}};
+  parts::expectNearReference(parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {}).pictures[0],
+                             scene, inputs);
+  inputs.clippingPlanes.clear();
+  // From between the surface and the side of the box, and from inside the solid.
+  scene.volume = parts::makeVolume(parts::ripples, glm::ivec3(48), ScalarType::uint16);
+  for (const glm::dvec3 eye : {glm::dvec3(20, -20, 20), glm::dvec3(3, 2, -15)}) {
+    inputs.views[0] = {.pose = Pose::lookAt(eye, {-3, 1, -2}), .frustum = Frustum::symmetric(60, kWidth, kHeight)};
+    for (const double isovalue : {0.3, 0.55}) {
+      inputs.isovalue = isovalue;
+      parts::expectNearReference(
+          parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {}).pictures[0], scene, inputs);
+    }
+  }
+}
+
+TEST(Extraction, FlatVolumesHaveNoCells) {
+  REQUIRE_MESH_SHADERS();
+  const Scene scene =
+      parts::makeScene(parts::makeVolume(parts::ball, {40, 40, 1}, ScalarType::uint8), ShadingModel::lambert);
+  const FrameInputs inputs = parts::makeInputs(parts::lookAtBox(scene.volume->grid(), 20, 15, kWidth, kHeight), 0.3);
+  const Drawn drawn = parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {}, true);
+  EXPECT_EQ(drawn.counters.at("triangles"), 0u);
+  parts::expectNearReference(drawn.pictures[0], scene, inputs);
+}
+
+TEST(Extraction, BothEyesEqualTwoPictures) {
+  REQUIRE_MESH_SHADERS();
+  const Scene scene =
+      parts::makeScene(parts::makeVolume(parts::ripples, glm::ivec3(40), ScalarType::uint16), ShadingModel::gooch);
+  FrameInputs inputs = parts::makeInputs(parts::lookAtBox(scene.volume->grid(), 33, 21, kWidth, kHeight));
+  View right = inputs.views[0];
+  right.pose.position += 6.0 * right.pose.right;
+  inputs.views.push_back(right);
+  inputs.views[0].layer = 1; // layers need not be in the views' order
+  const Drawn both = parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {}, true);
+  for (std::size_t view = 0; view < 2; ++view) {
+    FrameInputs one = inputs;
+    one.views = {inputs.views[view]};
+    one.views[0].layer = 0;
+    const Drawn single = parts::drawOnce(meshShaderIsosurface(), scene, one, kWidth, kHeight, {}, true);
+    EXPECT_TRUE(parts::identical(single.pictures[0], both.pictures[1 - view])) << view;
+    // Each extraction serves both.
+    EXPECT_LE(both.counters.at("triangles"), parts::countSurface(scene, inputs.isovalue, {8, 8, 4}, 96).triangles);
+  }
+}
+
+TEST(Extraction, MemoryIsWhatItAddedToTheLedger) {
+  REQUIRE_MESH_SHADERS();
+  const Scene scene =
+      parts::makeScene(parts::makeVolume(parts::ball, glm::ivec3(33), ScalarType::uint8), ShadingModel::gooch);
+  for (const bool culling : {false, true}) {
+    const Session session(meshShaderIsosurface(), scene,
+                          parts::withParameters(meshShaderIsosurface(), {{"culling", culling}}), {kWidth, kHeight, 1});
+    std::uint64_t bytes = 0;
+    for (const gpu::MemoryItem& item : session.technique().memory())
+      bytes += item.bytes;
+    EXPECT_EQ(bytes, session.preparedBytes());
+  }
+}
+
+TEST(Extraction, RefusesWhatCannotBe) {
+  REQUIRE_MESH_SHADERS();
+  const Scene scene =
+      parts::makeScene(parts::makeVolume(parts::ball, glm::ivec3(33), ScalarType::uint8), ShadingModel::gooch);
+  const auto why = [&](const Values& values, int views) {
+    return meshShaderIsosurface()
+        .whyUnsupported(scene, parts::withParameters(meshShaderIsosurface(), values), {kWidth, kHeight, views},
+                        &parts::device())
+        .value_or("");
+  };
+  EXPECT_EQ(why({}, 2), "");
+  EXPECT_EQ(why({{"block", std::string("16x4x4")}}, 1),
+            "granularity: found 8x8x8, allowed: multiples of the block 16x4x4 along each axis, or \"block\".");
+  EXPECT_EQ(why({{"block", std::string("16x4x4")}, {"granularity", std::string("16x16x16")}}, 1), "");
+  if (parts::device().facts().maximumMeshVertices < 512) {
+    EXPECT_THAT(why({{"vertex_limit", std::int64_t(256)}}, 2), testing::StartsWith("vertex_limit: 256 vertices"));
+  }
+}
+
+} // namespace
+} // namespace volmark::direct_rasterization

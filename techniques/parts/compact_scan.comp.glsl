@@ -1,0 +1,49 @@
+// Sums of counts before each one, in place, and the arguments of indirect draws or dispatches over all that was counted.
+// One workgroup does it all; an invocation sums a part of each run of kScanGroup counts. What writes the items runs next.
+#version 460
+
+#extension GL_EXT_scalar_block_layout : require
+
+#include <parts/surface_shared.h>
+
+layout(local_size_x = kScanGroup) in;
+
+layout(set = 0, binding = 0, scalar) buffer CountsBlock {
+  uint counts[]; // behind `groups` of them their total
+};
+layout(set = 0, binding = 1, scalar) writeonly buffer ArgumentsBlock {
+  uvec3 arguments[]; // workgroups of each draw
+};
+layout(push_constant, scalar) uniform ScanPush {
+  ScanConstants scan;
+};
+
+shared uint sums[kScanGroup];
+
+void main() {
+  uint lane = gl_LocalInvocationIndex;
+  uint before = 0u;
+  for (uint first = 0u; first < scan.groups; first += uint(kScanGroup)) {
+    uint index = first + lane;
+    uint own = index < scan.groups ? counts[index] : 0u;
+    sums[lane] = own;
+    for (uint offset = 1u; offset < uint(kScanGroup); offset *= 2u) {
+      barrier();
+      uint other = lane >= offset ? sums[lane - offset] : 0u;
+      barrier();
+      sums[lane] += other;
+    }
+    barrier();
+    if (index < scan.groups) counts[index] = before + sums[lane] - own;
+    before += sums[kScanGroup - 1];
+    barrier();
+  }
+  if (lane == 0u) counts[scan.groups] = before;
+  for (uint draw = lane; draw < scan.draws; draw += uint(kScanGroup)) {
+    uint start = draw * scan.chunk;
+    uint items = before > start ? min(before - start, scan.chunk) : 0u;
+    uint groups = (items + scan.perTask - 1u) / scan.perTask;
+    uint rows = (groups + uint(kDispatchWidth) - 1u) / uint(kDispatchWidth);
+    arguments[draw] = uvec3(min(groups, uint(kDispatchWidth)), rows, groups == 0u ? 0u : 1u);
+  }
+}

@@ -1,0 +1,110 @@
+// The isosurface in a cell: its case, its vertices, their normals (Lorensen and Cline 1987). The same bits in every shader,
+// so that neighbours in other blocks and other techniques get the same vertex of an edge.
+#ifndef PARTS_SURFACE_GLSL
+#define PARTS_SURFACE_GLSL
+
+#include <parts/surface_shared.h>
+#include <volmark/counters.glsl>
+#include <volmark/frame.glsl>
+#include <volmark/shading.glsl>
+#include <volmark/view.glsl>
+#include <volmark/volume.glsl>
+
+layout(constant_id = kIdSurfaceShaderFiltering) const bool kShaderFiltering = false;
+layout(constant_id = kIdSurfaceCounting) const bool kCounting = false;
+
+VOLMARK_FRAME(kSurfaceFrame)
+layout(set = 0, binding = kSurfaceVolume) uniform sampler3D volume;
+layout(set = 0, binding = kSurfaceLevel, scalar) uniform SurfaceBlock {
+  SurfaceConstants surface;
+};
+layout(set = 0, binding = kSurfaceTable, scalar) readonly buffer TableBlock {
+  uvec2 cellTriangles[256]; // marching_cubes_table.h: 15 nibbles of edges, the number of triangles
+};
+VOLMARK_COUNTERS(kSurfaceCounters)
+
+// The test of everything: a range of texel values that the surface goes through.
+bool isOccupied(vec2 range) {
+  return range.x < surface.threshold && range.y >= surface.threshold;
+}
+
+uint isInside(ivec3 voxel) {
+  return texelFetch(volume, voxel, 0).r >= surface.threshold ? 1u : 0u;
+}
+
+// Bit c: corner c, at (c & 1, (c >> 1) & 1, c >> 2), is inside.
+uint caseOfCell(ivec3 cell) {
+  uint corners = 0u;
+  for (int c = 0; c < 8; ++c) corners |= isInside(cell + ivec3(c & 1, (c >> 1) & 1, c >> 2)) << c;
+  return corners;
+}
+
+// Bits 0, 2, 4 and 6; bits 0, 1, 4 and 5: next to each other.
+uint gatherEven(uint bits) {
+  return (bits & 1u) | ((bits >> 1) & 2u) | ((bits >> 2) & 4u) | ((bits >> 3) & 8u);
+}
+uint gatherPairs(uint bits) {
+  return (bits & 3u) | ((bits >> 2) & 12u);
+}
+
+// Bit e: the surface crosses edge e. The vertices of a cell are its crossed edges, in this order.
+uint crossedEdges(uint corners) {
+  uint alongX = gatherEven(corners ^ (corners >> 1));
+  uint alongY = gatherPairs(corners ^ (corners >> 2));
+  uint alongZ = (corners ^ (corners >> 4)) & 15u;
+  return alongX | (alongY << 4) | (alongZ << 8);
+}
+
+uint triangleCount(uint corners) {
+  return cellTriangles[corners].y >> 28;
+}
+
+// Edges of triangle i.
+uvec3 triangleEdges(uint corners, uint i) {
+  uvec2 bits = cellTriangles[corners];
+  uvec3 shift = 12u * i + uvec3(0, 4, 8);
+  return uvec3(((shift.x < 32u ? bits.x >> shift.x : bits.y >> (shift.x - 32u))) & 15u,
+               ((shift.y < 32u ? bits.x >> shift.y : bits.y >> (shift.y - 32u))) & 15u,
+               ((shift.z < 32u ? bits.x >> shift.z : bits.y >> (shift.z - 32u))) & 15u);
+}
+
+// Place of an edge's vertex among those of its cell.
+uint vertexIndex(uint edges, uint edge) {
+  return uint(bitCount(edges & ((1u << edge) - 1u)));
+}
+
+// Of the end with the lower coordinate, and from there to the other one.
+ivec3 lowerEnd(uint edge) {
+  int a = int(edge & 1u);
+  int b = int((edge >> 1) & 1u);
+  return edge < 4u ? ivec3(0, a, b) : edge < 8u ? ivec3(a, 0, b) : ivec3(a, b, 0);
+}
+ivec3 edgeDirection(uint edge) {
+  return edge < 4u ? ivec3(1, 0, 0) : edge < 8u ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
+}
+
+// World position of the vertex on the edge from voxel `low` on.
+vec3 vertexAt(ivec3 low, ivec3 direction) {
+  float a = texelFetch(volume, low, 0).r;
+  float b = texelFetch(volume, low + direction, 0).r;
+  precise float t = clamp((surface.texel - a) / (b - a), 0.0, 1.0);
+  precise vec3 voxel = vec3(low) + t * vec3(direction);
+  precise vec3 world = frame.boxMinimum + voxel * frame.spacing;
+  return world;
+}
+
+// Unit normal by central differences, towards lower values; 0 where there is no gradient.
+vec3 vertexNormal(vec3 world) {
+  return normalOfGradient(sampleGradient(volume, volumeGrid(frame), world, kShaderFiltering));
+}
+
+// Index of an item of an indirect dispatch or draw that may have rows.
+uint workgroupIndex(uvec3 workgroup) {
+  return workgroup.y * uint(kDispatchWidth) + workgroup.x;
+}
+
+int layerOf(uint view) {
+  return int(bitfieldExtract(surface.layers, int(8u * view), 8));
+}
+
+#endif

@@ -1,0 +1,60 @@
+// What the host code and the shaders of rasterising techniques share. Scalar layout.
+#ifndef PARTS_SURFACE_SHARED_H
+#define PARTS_SURFACE_SHARED_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+
+#include <cstdint>
+namespace volmark::parts {
+using glm::ivec3;
+using glm::uvec3;
+using glm::vec3;
+using uint = std::uint32_t;
+#endif
+
+// Bindings of set 0.
+const int kSurfaceFrame = 0;
+const int kSurfaceVolume = 1;
+const int kSurfaceLevel = 2;
+const int kSurfaceTable = 3;
+const int kSurfaceCounters = 4;
+const int kSurfaceOwn = 5; // and following: the technique's
+
+// Specialisation constants.
+const int kIdSurfaceShaderFiltering = 0;
+const int kIdSurfaceShadingModel = 1;
+const int kIdSurfaceCounting = 2;
+const int kIdSurfaceOwn = 3; // and following: the technique's
+
+struct SurfaceConstants {
+  float threshold; // a texel at or above it is inside; the one test of everything
+  float texel;     // the isovalue as a texel value, where edges are cut; within rounding of the threshold
+  float near;      // distance of the near plane, world units
+  uint layers;     // output layer of view i in byte i
+};
+
+// Choosing items out of a list, in order: count, scan, write.
+const int kCompactGroup = 256;    // items of a workgroup
+const int kScanGroup = 256;       // invocations of the one workgroup that scans
+const int kDispatchWidth = 32768; // workgroups along x; the rest lie along y
+
+struct CompactConstants {
+  uint items;
+};
+
+// Of the scan: sums of `groups` counts; their total follows them. Draws of at most `chunk` items each.
+struct ScanConstants {
+  uint groups;
+  uint chunk;   // items of a draw
+  uint draws;   // arguments to be written
+  uint perTask; // items of a task (or mesh) workgroup
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(SurfaceConstants) == 16);
+static_assert(sizeof(ScanConstants) == 16);
+} // namespace volmark::parts
+#endif
+
+#endif
