@@ -1,7 +1,8 @@
-"""Made-up experiments of the bitfield-octree paper's scenarios, to the formats of harness/README.md, section 7."""
+"""Made-up experiments of papers' scenarios, to the formats of harness/README.md, section 7."""
 
 import json
 from dataclasses import dataclass, field
+from typing import Callable
 
 import numpy as np
 from exr_writer import write_exr
@@ -9,7 +10,9 @@ from synthetic import digest, plain_statistics, write_csv
 
 TECHNIQUES = {"none": "dvr_raymarch", "distance map": "dvr_distance_map", "boolean octree": "dvr_boolean_octree",
               "min-max octree": "dvr_minmax_octree", "bitfield octree": "dvr_bitfield_octree",
-              "bitfield octree, voxels": "dvr_bitfield_octree"}
+              "bitfield octree, voxels": "dvr_bitfield_octree",
+              "direct rasterization": "mesh_shader_isosurface", "octree ray marching": "iso_octree",
+              "optimized mesh": "optimized_mesh", "marching cubes": "marching_cubes"}
 POSES = 6
 
 
@@ -39,6 +42,12 @@ class Made:
     steps: np.ndarray | None = None
     timed: bool = False
     poses: int = POSES
+    update_ms: float | None = None
+    """Beside `ms`, which then is the draw time alone; None: a hundredth of `ms` is its update."""
+    by_phase: Callable[[float], float] = lambda phase: 1.0
+    """Times `ms`."""
+    config: dict = field(default_factory=dict)
+    device_type: str = "discrete_gpu"
 
 
 def write_made(folder, name, axes, points):
@@ -68,9 +77,9 @@ def _write_run(folder, point, listed, replicate):
         "format": "volmark.run", "version": 1, "run": run, "point": digest(listed["index"]), "replicate": replicate,
         "point_index": listed["index"], "group": listed["group"], "labels": listed["labels"], "status": point.status,
         "reason": "" if done else "needs more memory",
-        "config": {"scene": "s", "technique": {"name": TECHNIQUES[point.method], "parameters": point.parameters}},
+        "config": {"scene": "s", "technique": {"name": TECHNIQUES[point.method], "parameters": point.parameters}} | point.config,
         "technique": {"name": TECHNIQUES[point.method], "draws": "volume"}, "checks": [],
-        "provenance": {"device": {"identity": "gpu", "name": "gpu"}, "started": f"2024-05-06T07:08:{replicate:02d}Z"}}
+        "provenance": {"device": {"identity": "gpu", "name": "gpu", "type": point.device_type}, "started": f"2024-05-06T07:08:{replicate:02d}Z"}}
     if done:
         write_csv(run_folder / "frames.csv", "frames", rows, ["pass.build_structure"])
         times = [r["frame_ms"] for r in rows if r["orbit_kind"] == "headline"]
@@ -95,7 +104,10 @@ def _frames(point, rng):
             for frame in range(point.poses):
                 phase = frame / point.poses + (0.01 * rng.random() if point.timed else 0.0)
                 ms = point.ms * level * np.exp(rng.normal(0, point.noise)) * (point.slow if frame == point.poses - 1 else 1.0)
+                ms *= point.by_phase(phase)
+                update, draw = (0.01 * ms, 0.99 * ms) if point.update_ms is None else (point.update_ms, ms)
+                ms = update + draw
                 rows.append({"orbit_kind": kind, "orbit": orbit, "frame": frame, "phase": phase, "host_ms": ms, "interval_ms": ms,
-                             "cpu_ms": ms, "update_ms": 0.01 * ms, "draw_ms": 0.99 * ms, "frame_ms": ms, "gpu_ms": ms, "disturbed": "",
+                             "cpu_ms": ms, "update_ms": update, "draw_ms": draw, "frame_ms": ms, "gpu_ms": ms, "disturbed": "",
                              "pass.build_structure": point.rebuilt_ms * (1 + 0.001 * frame) if kind == "breakdown" else ""})
     return rows

@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 from paper_experiments import Made, write_made
 from volmark_analysis.papers.bitfield_octree_2021 import published
-from volmark_analysis.papers.bitfield_octree_2021.cells import Measurements, load_measurements
 from volmark_analysis.papers.bitfield_octree_2021.claims import Sources, claims_of
-from volmark_analysis.papers.bitfield_octree_2021.evidence import (HELD, NOT_HELD, NOT_MEASURED, UNDECIDED, Quantity, all_of, at_least,
-                                                                   at_most, most_of, within)
+from volmark_analysis.papers.evidence import (HELD, NOT_HELD, NOT_MEASURED, UNDECIDED, Quantity, above, all_of, at_least, at_most,
+                                              most_of, within)
+from volmark_analysis.papers.measurements import Measurements, load_measurements
 
+SCENARIOS = "configs/papers/bitfield_octree_2021"
 METHODS = (*published.METHODS, published.BITFIELD_VOXELS)
 PAPER = Path(os.environ.get("VOLMARK_PAPERS", "papers")) / "bitfield-octree-2021.txt"
 
@@ -41,7 +42,7 @@ def claims_for(tmp_path, points, **others):
 
 def measured_table(tmp_path, points):
     axes = ("dataset", "configuration", "method")
-    return load_measurements(write_made(tmp_path / "table1", "table1", axes, points), axes)
+    return load_measurements(write_made(tmp_path / "table1", "table1", axes, points), axes, SCENARIOS)
 
 
 def verdict_of(claims, start, of="verdict"):
@@ -60,10 +61,10 @@ def test_the_published_table_holds_the_papers_claims(tmp_path):
     claims = claims_for(tmp_path, table_points())
     for start in (DISTANCE, BOOLEAN, SAME, LUNGS, HEAD, MINMAX, ONLY):
         assert verdict_of(claims, start) == HELD, start
-        assert verdict_of(claims, start, "work_verdict") == HELD, start
+        assert verdict_of(claims, start, "other_verdict") == HELD, start
     generation = [c for c in claims if c.text.startswith(GENERATION)]
     # 14.0 / 5.2 to 350.4 / 18.3 is within 2.5 to 20; the made builds spread by a few percent, which leaves the limits alone.
-    assert [c.verdict for c in generation] == [HELD] * 3 and all(not c.in_work for c in generation)
+    assert [c.verdict for c in generation] == [HELD] * 3 and all(not c.in_other for c in generation)
 
 
 @pytest.mark.parametrize("start, cell, factor", [
@@ -78,14 +79,14 @@ def test_the_published_table_holds_the_papers_claims(tmp_path):
 ])
 def test_one_cell_on_the_other_side_is_not_held(tmp_path, start, cell, factor):
     claims = claims_for(tmp_path, table_points(lambda *here: factor if here == cell else 1.0))
-    assert verdict_of(claims, start) == NOT_HELD and verdict_of(claims, start, "work_verdict") == NOT_HELD
+    assert verdict_of(claims, start) == NOT_HELD and verdict_of(claims, start, "other_verdict") == NOT_HELD
 
 
 @pytest.mark.parametrize("start", [DISTANCE, BOOLEAN, SAME, LUNGS, HEAD, MINMAX, ONLY])
 def test_noise_decides_nothing_in_time_and_leaves_the_work_alone(tmp_path, start):
     claims = claims_for(tmp_path, table_points(noise=2.0))
     assert verdict_of(claims, start) in (UNDECIDED, NOT_HELD)
-    assert verdict_of(claims, start, "work_verdict") == HELD
+    assert verdict_of(claims, start, "other_verdict") == HELD
     (claim,) = [c for c in claims if c.text.startswith(start)]
     assert any(c.verdict == UNDECIDED for c in claim.cases)
 
@@ -137,7 +138,7 @@ def test_the_slowest_percentile(tmp_path, slow, poses, verdict):
 
 
 def grid(tmp_path, name, axes, points):
-    return load_measurements(write_made(tmp_path / name, name, axes, points), axes)
+    return load_measurements(write_made(tmp_path / name, name, axes, points), axes, SCENARIOS)
 
 
 def figure4(tmp_path, best, noise=0.0):
@@ -158,7 +159,7 @@ def test_best_leaf(tmp_path, best, noise, verdict, work):
             for run in r.completed:
                 run.columns["frame_ms"] *= 1 + 0.001 * run.replicate
     claims = claims_for(tmp_path, table_points(), fig4=measurements)
-    assert verdict_of(claims, "Leaves of 4³") == verdict and verdict_of(claims, "Leaves of 4³", "work_verdict") == work
+    assert verdict_of(claims, "Leaves of 4³") == verdict and verdict_of(claims, "Leaves of 4³", "other_verdict") == work
 
 
 def figure6(tmp_path, best, noise=0.001):
@@ -182,11 +183,12 @@ def test_best_level_on_most(tmp_path, levels, noise, verdict):
 
 
 def test_verdicts_of_quantities():
-    straddling, below, above, bare = Quantity(1, 0.9, 1.1), Quantity(0.9, 0.8, 1.0), Quantity(1.2, 1.1, 1.3), Quantity(0.5)
-    assert [at_most(q, 1.0) for q in (below, straddling, above, bare)] == [HELD, UNDECIDED, NOT_HELD, UNDECIDED]
-    assert [at_least(q, 1.0) for q in (below, straddling, above, bare)] == [UNDECIDED, UNDECIDED, HELD, UNDECIDED]
-    assert [within(q, 0.85, 1.15) for q in (below, straddling, above, bare)] == [UNDECIDED, HELD, UNDECIDED, UNDECIDED]
-    assert within(above, 1.5, 2) == within(above, 0.1, 0.2) == NOT_HELD
+    straddling, below, beyond, bare = Quantity(1, 0.9, 1.1), Quantity(0.9, 0.8, 1.0), Quantity(1.2, 1.1, 1.3), Quantity(0.5)
+    assert [at_most(q, 1.0) for q in (below, straddling, beyond, bare)] == [HELD, UNDECIDED, NOT_HELD, UNDECIDED]
+    assert [at_least(q, 1.0) for q in (below, straddling, beyond, bare)] == [UNDECIDED, UNDECIDED, HELD, UNDECIDED]
+    assert [within(q, 0.85, 1.15) for q in (below, straddling, beyond, bare)] == [UNDECIDED, HELD, UNDECIDED, UNDECIDED]
+    assert within(beyond, 1.5, 2) == within(beyond, 0.1, 0.2) == NOT_HELD
+    assert [above(q, 1.0) for q in (below, straddling, beyond, bare)] == [NOT_HELD, UNDECIDED, HELD, UNDECIDED]
     assert all_of([HELD, NOT_MEASURED]) == UNDECIDED and all_of([NOT_HELD, NOT_MEASURED, HELD]) == NOT_HELD
     assert all_of([]) == all_of([NOT_MEASURED]) == most_of([]) == NOT_MEASURED
     assert most_of([HELD, HELD, NOT_HELD]) == HELD and most_of([HELD, NOT_HELD]) == NOT_HELD

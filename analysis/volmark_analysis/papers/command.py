@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from .bitfield_octree_2021 import command as bitfield_octree_2021
+from .direct_rasterization import command as direct_rasterization
 
-_PAPERS = (bitfield_octree_2021,)
+_PAPERS = (bitfield_octree_2021, direct_rasterization)
 
 
 def add_command(commands) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import dataclass, field
+from typing import Callable
 
 from ..tables import tex_text
 
@@ -40,6 +41,10 @@ def to_tex(grid: TextGrid) -> str:
     lines += [r"    \bottomrule", r"  \end{tabular}"]
     lines += [f"  \\par\\footnotesize {tex_text(note)}" for note in grid.notes]
     return "\n".join(lines + [r"\end{table}"]) + "\n"
+
+
+def joined(grids: list[TextGrid], writer: Callable[[TextGrid], str]) -> str:
+    return "\n".join(map(writer, grids))
 
 
 def to_csv(header: list[str], rows: list[dict]) -> str:

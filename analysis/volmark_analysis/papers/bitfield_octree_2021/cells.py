@@ -2,51 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import cached_property
-from pathlib import Path
-
 import numpy as np
 
-from ...errors import InputError
-from ...load import Experiment, load_experiment
-from ...points import PointResult, point_results
-from ...search.candidates import latest
+from ...points import PointResult
+from ..evidence import Quantity
+from ..measurements import Measurements
 from . import published
-from .evidence import Quantity
 
 TECHNIQUES = {"dvr_raymarch": "none", "dvr_distance_map": "distance map", "dvr_boolean_octree": "boolean octree",
               "dvr_minmax_octree": "min-max octree", "dvr_bitfield_octree": published.BITFIELD}
 BUILD_PASS = "build_structure"
 
 
-@dataclass
-class Measurements:
-    """An experiment of one of the paper's scenarios; empty if its folder was not given."""
-
-    experiment: Experiment | None = None
-    results: list[PointResult] = field(default_factory=list)
-
-    @cached_property
-    def cells(self) -> dict[tuple[str, str, str], PointResult]:
-        """Table 1: by dataset, configuration and method."""
-        return {tuple(r.labels.get(k, "") for k in ("dataset", "configuration", "method")): r for r in self.results}
-
-    def done(self, dataset: str, configuration: str, method: str) -> PointResult | None:
-        result = self.cells.get((dataset, configuration, method))
-        return result if result is not None and result.completed else None
+def cell(measurements: Measurements, dataset: str, configuration: str, method: str) -> PointResult | None:
+    """Of Table 1."""
+    return measurements.find(dataset=dataset, configuration=configuration, method=method)
 
 
-def load_measurements(folder: Path | None, axes: tuple[str, ...]) -> Measurements:
-    """`axes`: labels that the scenario's points have. Raises InputError."""
-    if folder is None:
-        return Measurements()
-    experiment = load_experiment(folder)
-    missing = [axis for axis in axes if axis not in experiment.axes]
-    if missing:
-        raise InputError(f"{folder}: points have no label {missing[0]!r} (found: {', '.join(experiment.axes)}); expected an "
-                         f"experiment of configs/papers/bitfield_octree_2021")
-    return Measurements(experiment, latest(point_results(experiment)))
+def done(measurements: Measurements, dataset: str, configuration: str, method: str) -> PointResult | None:
+    """The same if it completed."""
+    return measurements.done(dataset=dataset, configuration=configuration, method=method)
 
 
 def parameter_of(result: PointResult, name: str):
@@ -60,10 +35,10 @@ def parameter_of(result: PointResult, name: str):
 def generation_of(measurements: Measurements, dataset: str, method: str) -> Quantity | None:
     """How long a structure takes to build: median, lowest and highest. What does not depend on the transfer function is built
     once a run; for the others, of every breakdown frame of the block "generation"."""
-    rebuilt = measurements.done(dataset, published.GENERATION, method)
+    rebuilt = done(measurements, dataset, published.GENERATION, method)
     values = _pass_times(rebuilt) if rebuilt is not None else []
     if not values:
-        own = [measurements.done(dataset, c, method) for c in published.CONFIGURATIONS]
+        own = [done(measurements, dataset, c, method) for c in published.CONFIGURATIONS]
         values = [time for r in own if r is not None for run in r.completed for time in _once(run)]
     if not values:
         return None

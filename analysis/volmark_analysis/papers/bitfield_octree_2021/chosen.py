@@ -9,8 +9,9 @@ from ...errors import InputError
 from ...search.best import Best, best_of
 from ...search.candidates import contests_of
 from ..grids import TextGrid
+from ..measurements import Measurements
 from . import published
-from .cells import TECHNIQUES, Measurements, parameter_of
+from .cells import TECHNIQUES, parameter_of
 from .table1 import parameters_text
 
 _PATH = "technique.parameters."

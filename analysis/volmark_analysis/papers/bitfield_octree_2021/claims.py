@@ -2,55 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Callable
 
 import numpy as np
 
-from ...columns import ABSENT, number_text
+from ...columns import number_text
 from ...points import PointResult
 from ...search.best import best_of
 from ...search.candidates import contests_of
+from ..claims import Case, Claim
+from ..evidence import HELD, NOT_HELD, UNDECIDED, Quantity, above, at_least, at_most, most_of, quotient, time_ratio, within
+from ..measurements import Measurements
 from . import published
-from .cells import TECHNIQUES, Measurements, generation_of
-from .evidence import (HELD, NOT_HELD, NOT_MEASURED, UNDECIDED, Quantity, all_of, at_least, at_most, most_of, time_ratio, within,
-                       work_of, work_ratio)
+from .cells import TECHNIQUES, done, generation_of
+from .work import work_of, work_ratio
 
 _SUPPORTS = {published.BITFIELD: "cells", published.BITFIELD_VOXELS: "voxels"}
 SAME_WITHIN = 1.02
 """Bitfield and min-max octree: 2 %."""
-
-
-@dataclass
-class Case:
-    """One cell that a claim is about."""
-
-    where: str
-    published: str
-    measured: str = NOT_MEASURED
-    verdict: str = NOT_MEASURED
-    work: str = NOT_MEASURED
-    """The same in samples plus node tests."""
-    work_verdict: str = NOT_MEASURED
-
-
-@dataclass
-class Claim:
-    text: str
-    section: str
-    cases: list[Case] = field(default_factory=list)
-    join: Callable[[list[str]], str] = all_of
-    note: str = ""
-    in_work: bool = True
-    """Whether the claim means something in samples and node tests."""
-
-    @property
-    def verdict(self) -> str:
-        return self.join([c.verdict for c in self.cases])
-
-    @property
-    def work_verdict(self) -> str:
-        return self.join([c.work_verdict for c in self.cases]) if self.in_work else ABSENT
 
 
 @dataclass
@@ -82,14 +52,14 @@ def ratio_case(table: Measurements, dataset: str, configuration: str, a: str, b:
     """Time of `a` over time of `b`."""
     paper = published.time_ratio(dataset, configuration, published.column_of(a), published.column_of(b))
     case = Case(f"{dataset}, {published.TITLES[configuration]}: {a} / {b}", number_text(paper))
-    result_a, result_b = table.done(dataset, configuration, a), table.done(dataset, configuration, b)
+    result_a, result_b = done(table, dataset, configuration, a), done(table, dataset, configuration, b)
     if result_a is None or result_b is None:
         return case
     ratio = time_ratio(result_a, result_b)
     case.measured, case.verdict = f"{ratio.text}{'' if ratio.low is not None else ', without bounds'}", judge(ratio)
     work = work_ratio(result_a, result_b)
     if work is not None:
-        case.work, case.work_verdict = number_text(work, 4), judge(Quantity(work, work, work))
+        case.other, case.other_verdict = number_text(work, 4), judge(Quantity(work, work, work))
     return case
 
 
@@ -126,23 +96,17 @@ def minmax_loses_to_none(table: Measurements) -> Claim:
     cells = [(d, c) for d in ("lungs", "head MRI") for c in published.CONFIGURATIONS
              if published.time_ratio(d, c, "min-max octree", "none") > 1]
     return Claim("The min-max octree is slower than no skipping on lungs and head MRI.", "table 1",
-                 [ratio_case(table, d, c, "min-max octree", "none", _slower) for d, c in cells],
+                 [ratio_case(table, d, c, "min-max octree", "none", lambda q: above(q, 1.0)) for d, c in cells],
                  note="The cells in which the published min-max octree is slower than None.")
 
 
 def bitfield_loses_to_none(table: Measurements, bitfield: str) -> Claim:
     def judge(d, c):
         loses = published.time_ratio(d, c, published.BITFIELD, "none") > 1
-        return _slower if loses else lambda q: at_most(q, 1.0)
+        return (lambda q: above(q, 1.0)) if loses else (lambda q: at_most(q, 1.0))
 
     return Claim(f"The bitfield octree ({_SUPPORTS[bitfield]}) is slower than no skipping only on head MRI (Marching Only).", "table 1",
                  [ratio_case(table, d, c, bitfield, "none", judge(d, c)) for d in published.DATASETS for c in published.CONFIGURATIONS])
-
-
-def _slower(quantity: Quantity) -> str:
-    """Beyond doubt above 1."""
-    verdict = at_most(quantity, 1.0)
-    return {HELD: NOT_HELD, NOT_HELD: HELD}.get(verdict, verdict)
 
 
 # Generation ---------------------------------------------------------------------------------------------------
@@ -151,7 +115,7 @@ def _slower(quantity: Quantity) -> str:
 def distance_map_generates_slower(table: Measurements) -> list[Claim]:
     low, high = published.GENERATION_RATIOS
     return [Claim(f"Generating the distance map takes {low:g} to {high:g} times as long as the {octree}.", "4.4",
-                  [_generation_case(table, d, octree) for d in published.DATASETS], in_work=False) for octree in published.OCTREES]
+                  [_generation_case(table, d, octree) for d in published.DATASETS], in_other=False) for octree in published.OCTREES]
 
 
 def _generation_case(table: Measurements, dataset: str, octree: str) -> Case:
@@ -160,8 +124,7 @@ def _generation_case(table: Measurements, dataset: str, octree: str) -> Case:
     a, b = generation_of(table, dataset, "distance map"), generation_of(table, dataset, octree)
     if a is None or b is None:
         return case
-    bounds = (a.low / b.high, a.high / b.low) if a.low is not None and b.low else (None, None)
-    ratio = Quantity(a.value / b.value, *bounds, "lowest over highest build, and the reverse")
+    ratio = quotient(a, b, "lowest over highest build, and the reverse")
     case.measured, case.verdict = ratio.text, within(ratio, *published.GENERATION_RATIOS)
     return case
 
@@ -218,7 +181,7 @@ def _best_case(results: list[PointResult], dataset: str, axis: str, wanted: list
         case.verdict, case.measured = UNDECIDED, f"{case.measured}, without bounds"
     least = _least_work(mine, axis)
     if least:
-        case.work, case.work_verdict = ", ".join(least), _choice_verdict(least, wanted)
+        case.other, case.other_verdict = ", ".join(least), _choice_verdict(least, wanted)
     return case
 
 
@@ -240,7 +203,7 @@ def _least_work(results: list[PointResult], axis: str) -> list[str]:
 def slowest_percentile(table: Measurements) -> Claim:
     paper = published.SLOWEST_PERCENTILE_LONGER
     case = Case("mean over the table's points of low1_avg_ms / mean_ms", f"{1 + paper:.2f}")
-    points = [r for d in published.DATASETS for c in published.CONFIGURATIONS for m in published.METHODS if (r := table.done(d, c, m)) is not None]
+    points = [r for d in published.DATASETS for c in published.CONFIGURATIONS for m in published.METHODS if (r := done(table, d, c, m)) is not None]
     if points:
         ratios = [r.statistics["low1_avg_ms"] / r.statistics["mean_ms"] for r in points]
         low, high = np.percentile(ratios, (5, 95))
@@ -249,5 +212,5 @@ def slowest_percentile(table: Measurements) -> Claim:
         case.verdict = UNDECIDED if short or len(points) < 2 else HELD if low <= 1 + paper <= high else NOT_HELD
         if short:
             case.measured += ", too few poses for a tail"
-    return Claim("The slowest 1 % of frames takes about 27 % longer on average.", "table 1", [case], in_work=False,
+    return Claim("The slowest 1 % of frames takes about 27 % longer on average.", "table 1", [case], in_other=False,
                  note="Held: the published value lies within percentiles 5 to 95 over the points.")

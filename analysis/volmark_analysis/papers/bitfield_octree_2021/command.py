@@ -6,13 +6,20 @@ import argparse
 from pathlib import Path
 
 from ...errors import InputError
-from ..grids import TextGrid, to_csv, to_markdown, to_tex
-from .cells import Measurements, load_measurements
+from ..claims_text import Wording, claims_markdown
+from ..figures import captions_markdown
+from ..grids import joined, to_csv, to_markdown, to_tex
+from ..measurements import Measurements, load_measurements
+from ..output import write_output
+from . import published
 from .chosen import chosen_grid, write_chosen
 from .claims import Sources, claims_of
-from .claims_text import claims_markdown
-from .figures import captions_markdown, figures_of, write_figures
+from .figures import figures_of
 from .table1 import CSV_HEADER, csv_rows, ratios_grid, times_grid
+
+_SCENARIOS = "configs/papers/bitfield_octree_2021"
+_WORDING = Wording("Claims of the bitfield-octree paper (2021)", published.stand_in_text(published.DATASETS), "time",
+                   "samples + node tests", "verdict in these", ("Samples and node tests are counted exactly: their ratio has no bounds.",))
 
 _AXES = {"table1": ("dataset", "configuration", "method"), "search": ("dataset", "leaf", "bits", "initial_level"),
          "fig4": ("dataset", "leaf", "bits", "initial_level"), "fig5": ("leaf", "bits"),
@@ -37,7 +44,7 @@ def _run(options) -> None:
         raise InputError("--output: missing, expected a folder (or --choose FILE)")
     if options.choose is not None and options.search is None:
         raise InputError("--choose: needs --search DIR")
-    sources = {name: load_measurements(getattr(options, name), axes) for name, axes in _AXES.items()}
+    sources = {name: load_measurements(getattr(options, name), axes, _SCENARIOS) for name, axes in _AXES.items()}
     if options.choose is not None:
         print(f"{options.choose}: {write_chosen(sources['search'], options.choose)} cases have the best parameters of {options.search}")
     if options.output is not None:
@@ -50,19 +57,7 @@ def write_all(folder: Path, sources: dict[str, Measurements]) -> None:
     grids = [times_grid(table), ratios_grid(table), chosen_grid(sources["search"])]
     drawn = figures_of(*(sources[name] for name in ("fig4", "fig5", "fig6", "fig7")))
     claims = claims_of(Sources(table, sources["search"], sources["fig4"], sources["fig6"]))
-    texts = {"table1.md": _joined(grids, to_markdown), "table1.tex": _joined(grids, to_tex),
-             "table1.csv": to_csv(CSV_HEADER, csv_rows(table)), "claims.md": claims_markdown(claims),
-             "figures.md": captions_markdown(drawn)}
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, text in texts.items():
-            (folder / name).write_text(text, encoding="utf-8")
-        names = [*texts, *write_figures(folder, drawn)]
-    except OSError as error:
-        raise InputError(f"{error.filename or folder}: can't be written ({error.strerror or error})") from None
-    for name in names:
-        print(folder / name)
-
-
-def _joined(grids: list[TextGrid], writer) -> str:
-    return "\n".join(map(writer, grids))
+    texts = {"table1.md": joined(grids, to_markdown), "table1.tex": joined(grids, to_tex),
+             "table1.csv": to_csv(CSV_HEADER, csv_rows(table)), "claims.md": claims_markdown(claims, _WORDING),
+             "figures.md": captions_markdown("Figures of the bitfield-octree paper (2021)", drawn)}
+    write_output(folder, texts, drawn)

@@ -2,58 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-
 import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
 
 from ...columns import number_text
 from ...exr import read_exr
-from ...plots import _PALETTE, FAINT, GROUND, TEXT, finish, svg_of
+from ...plots import _PALETTE, FAINT, finish
 from ...points import PointResult
+from ..figures import Drawn, caption_text, over_phases, panel_title, panels
+from ..measurements import Measurements
 from . import published
-from .cells import Measurements
-from .evidence import work_of
+from .work import work_of
 
 _BITS_COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#7F7F7F")
 _SECONDS = 20.0
 """Figure 7: two revolutions."""
 
 
-@dataclass
-class Drawn:
-    name: str
-    caption: str
-    figure: Figure | None
-    """None: nothing was measured."""
-
-
 def figures_of(fig4: Measurements, fig5: Measurements, fig6: Measurements, fig7: Measurements) -> list[Drawn]:
     return [figure4(fig4), figure4_levels(fig4), figure5(fig5), figure6(fig6), figure7(fig7)]
-
-
-def write_figures(folder: Path, drawn: list[Drawn]) -> list[str]:
-    """svg and png. Returns the names of the files."""
-    names = []
-    for one in drawn:
-        if one.figure is not None:
-            (folder / f"{one.name}.svg").write_bytes(svg_of(one.figure))
-            one.figure.savefig(folder / f"{one.name}.png", dpi=150, metadata={"Software": None})
-            names += [f"{one.name}.svg", f"{one.name}.png"]
-    return names
-
-
-def captions_markdown(drawn: list[Drawn]) -> str:
-    parts = ["# Figures of the bitfield-octree paper (2021)", ""]
-    for one in drawn:
-        parts += [f"![{one.name}]({one.name}.svg)" if one.figure is not None else f"{one.name}: not measured", "", one.caption, ""]
-    return "\n".join(parts)
-
-
-def _done(measurements: Measurements, **labels: str) -> list[PointResult]:
-    return [r for r in measurements.results if r.completed and all(r.labels.get(k) == v for k, v in labels.items())]
 
 
 def _datasets(results: list[PointResult]) -> list[str]:
@@ -61,21 +28,8 @@ def _datasets(results: list[PointResult]) -> list[str]:
 
 
 def _caption(text: str, results: list[PointResult], datasets) -> str:
-    """What is shown, stand-ins, and the error of the pictures whose times are shown."""
-    psnr = [r.errors["psnr_db"] for r in results if "psnr_db" in r.errors]
-    error = f"Lowest PSNR of the pictures: {min(psnr):.1f} dB." if psnr else "Errors of the pictures: not measured or identical."
-    short = " From fewer than 299 poses a tail is not reliable." if any(r.insufficient_frames for r in results) else ""
-    return f"{text} {published.stand_in_text(datasets)} {error if results else ''}{short}".replace("  ", " ").strip()
-
-
-def _axes(columns: int, rows: int = 1, height: float = 3.0) -> tuple[Figure, list]:
-    figure = Figure(figsize=(4.4 * columns, height * rows), layout="constrained")
-    figure.patch.set_facecolor(GROUND)
-    return figure, list(figure.subplots(rows, columns, squeeze=False).ravel())
-
-
-def _title(ax, text: str) -> None:
-    ax.set_title(text, loc="left", fontsize=10, fontweight="bold", color=TEXT)
+    caption = caption_text(text, results, published.stand_in_text(datasets))
+    return caption + (" From fewer than 299 poses a tail is not reliable." if any(r.insufficient_frames for r in results) else "")
 
 
 def _dataset_title(dataset: str) -> str:
@@ -90,16 +44,16 @@ def _numbers(results: list[PointResult], axis: str) -> list[str]:
 
 
 def figure4(fig4: Measurements) -> Drawn:
-    results = _done(fig4, initial_level="0")
+    results = fig4.all_done(initial_level="0")
     datasets = _datasets(results)
     caption = _caption("Figure 4: frame times by leaf size (groups) and bitfield width (colours), from the root, no early exit. Dark: "
                        "mean; light: mean of the slowest 1 %.", results, ("Manix",))
     if not results:
         return Drawn("fig4", caption, None)
-    figure, axes = _axes(len(datasets))
+    figure, axes = panels(len(datasets))
     for ax, dataset in zip(axes, datasets):
         _draw_bars(ax, [r for r in results if r.labels["dataset"] == dataset])
-        _title(ax, _dataset_title(dataset))
+        panel_title(ax, _dataset_title(dataset))
     axes[0].legend(title="bits", fontsize=8, title_fontsize=8, frameon=False, ncol=2)
     return Drawn("fig4", caption, figure)
 
@@ -120,7 +74,7 @@ def _draw_bars(ax, results: list[PointResult]) -> None:
 
 def figure4_levels(fig4: Measurements) -> Drawn:
     """Beyond the figure: all initial levels."""
-    every = _done(fig4)
+    every = fig4.all_done()
     counts = {bits: len({r.labels["initial_level"] for r in every if r.labels["bits"] == bits}) for bits in _numbers(every, "bits")}
     bits = max(counts, key=lambda b: (counts[b], b == "32"), default="")
     results = [r for r in every if r.labels["bits"] == bits] if counts.get(bits, 0) > 1 else []
@@ -129,7 +83,7 @@ def figure4_levels(fig4: Measurements) -> Drawn:
                        "early exit.", results, ("Manix",))
     if not results:
         return Drawn("fig4_levels", caption, None)
-    figure, axes = _axes(len(datasets))
+    figure, axes = panels(len(datasets))
     for ax, dataset in zip(axes, datasets):
         mine = [r for r in results if r.labels["dataset"] == dataset]
         for i, leaf in enumerate(_numbers(mine, "leaf")):
@@ -137,7 +91,7 @@ def figure4_levels(fig4: Measurements) -> Drawn:
         finish(ax, "initial octree level", "mean frame time, ms")
         ax.set_ylim(bottom=0)
         ax.legend(fontsize=8, frameon=False)
-        _title(ax, _dataset_title(dataset))
+        panel_title(ax, _dataset_title(dataset))
     return Drawn("fig4_levels", caption, figure)
 
 
@@ -150,20 +104,20 @@ def _draw_levels(ax, results: list[PointResult], color: str, line, label: str, v
 
 
 def figure5(fig5: Measurements) -> Drawn:
-    results = _done(fig5)
+    results = fig5.all_done()
     caption = _caption(f"Figure 5: iterations (samples plus node tests) of each ray on the kingsnake, from the root, no early exit; "
                        f"black 0, brightest {published.MOST_ITERATIONS}.", results, ())
-    maps = [(r, _steps_of(r)) for bits in ("64", "16") for leaf in ("4", "32") for r in _done(fig5, bits=bits, leaf=leaf)]
+    maps = [(r, _steps_of(r)) for bits in ("64", "16") for leaf in ("4", "32") for r in fig5.all_done(bits=bits, leaf=leaf)]
     maps = [(r, steps) for r, steps in maps if steps is not None]
     if not maps:
         return Drawn("fig5", caption, None)
     columns = 2 if len(maps) > 1 else 1
-    figure, axes = _axes(columns, -(-len(maps) // columns), 4.0)
+    figure, axes = panels(columns, -(-len(maps) // columns), 4.0)
     for letter, ax, (r, steps) in zip("abcd", axes, maps):
         image = ax.imshow(steps / published.MOST_ITERATIONS, cmap=matplotlib.colormaps["inferno"], vmin=0, vmax=1)
         hit = steps[steps > 0]
         mean = number_text(float(hit.mean())) if hit.size else "0"
-        _title(ax, f"({letter}) {r.labels['leaf']}³ leaves, {r.labels['bits']} bits\nmean of rays {mean}, most {int(steps.max())}")
+        panel_title(ax, f"({letter}) {r.labels['leaf']}³ leaves, {r.labels['bits']} bits\nmean of rays {mean}, most {int(steps.max())}")
         ax.set_axis_off()
     for ax in axes[len(maps):]:
         ax.set_axis_off()
@@ -182,13 +136,13 @@ def _steps_of(result: PointResult) -> np.ndarray | None:
 
 
 def figure6(fig6: Measurements) -> Drawn:
-    results = _done(fig6)
+    results = fig6.all_done()
     datasets = _datasets(results)
     caption = _caption("Figure 6: by initial octree level, 4³ leaves, 64 bits, no early exit. Solid: bidirectional; dashed: top-down. "
                        "Left: mean frame time; right: samples plus node tests of a frame.", results, published.STAND_INS)
     if not results:
         return Drawn("fig6", caption, None)
-    figure, (times, work) = _axes(2, 1, 3.8)
+    figure, (times, work) = panels(2, 1, 3.8)
     for i, dataset in enumerate(datasets):
         for traversal, line in (("bidirectional", "-"), ("top_down", (0, (4, 1.6)))):
             mine = [r for r in results if r.labels["dataset"] == dataset and r.labels["traversal"] == traversal]
@@ -207,33 +161,24 @@ def figure6(fig6: Measurements) -> Drawn:
 
 
 def figure7(fig7: Measurements) -> Drawn:
-    results = _done(fig7)
+    results = fig7.all_done()
     caption = _caption(f"Figure 7: frame times in stereo over two revolutions in {_SECONDS:g} s while the transfer function changes in "
                        f"every frame. Red: the budget of {published.TIME_BUDGET_MS} ms.", results, ("Manix",))
     if not results:
         return Drawn("fig7", caption, None)
-    figure, (ax,) = _axes(1, 1, 3.2)
+    figure, (ax,) = panels(1, 1, 3.2)
     figure.set_size_inches(7.5, 3.2)
     for i, r in enumerate(results):
-        phases, times = _over_time(r)
+        phases, times = over_phases(r)
         ax.plot(_SECONDS * phases, times, color=_PALETTE[i % len(_PALETTE)], lw=1.2, label=r.technique)
     ax.axhline(published.TIME_BUDGET_MS, color="#c00000", ls="--", lw=1.2)
-    ax.set_ylim(0, 1.1 * max(published.TIME_BUDGET_MS, *(float(_over_time(r)[1].max()) for r in results)))
+    ax.set_ylim(0, 1.1 * max(published.TIME_BUDGET_MS, *(float(over_phases(r)[1].max()) for r in results)))
     ax.set_xlim(0, _SECONDS)
     finish(ax, "time, s", "frame time, ms")
     ax.grid(True, color=FAINT)
     mean = ", ".join(number_text(r.statistics["mean_ms"]) for r in results)
     return Drawn("fig7", f"{caption} Mean frame time {mean} ms; updates of the transfer function take {_update_text(results)} of it.",
                  figure)
-
-
-def _over_time(result: PointResult) -> tuple[np.ndarray, np.ndarray]:
-    """Phases and times: the median over orbits, or of timed pacing every frame of the first process."""
-    matrices = result.orbit_matrices
-    if matrices is not None:
-        return result.phases, np.median(np.concatenate(matrices), axis=0)
-    rows = result.completed[0].headline.sort_values("phase")
-    return rows.phase.to_numpy(), rows.frame_ms.to_numpy()
 
 
 def _update_text(results: list[PointResult]) -> str:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from ...columns import count_text, error_text, number_text
+from ...columns import number_text
 from ...points import PointResult
 from ...search.objective import measured, time_note
-from ...tables import caption_of, failure_text
+from ...tables import caption_of
+from ..evidence import KINDS, time_ratio
 from ..grids import TextGrid
+from ..measurements import Measurements, time_text, why_absent
 from . import published
-from .cells import Measurements, generation_of, parameter_of
-from .evidence import KINDS, time_ratio, work_of, work_ratio
+from .cells import cell, done, generation_of, parameter_of
+from .work import work_of, work_ratio
 
 METHODS = (*published.METHODS, published.BITFIELD_VOXELS)
 _TITLES = {"none": "None", "distance map": "Distance Map", "boolean octree": "Boolean Octree", "min-max octree": "Min-Max Octree",
@@ -28,10 +30,10 @@ def times_grid(table: Measurements) -> TextGrid:
                              + [time_cell(table, dataset, configuration, m) for m in METHODS])
         grid.rows.append([_dataset_text(dataset), "Generation [ms]"] + [generation_cell(table, dataset, m) for m in METHODS])
         grid.rows.append([_dataset_text(dataset), "Parameters"] + [parameters_cell(table, dataset, m) for m in METHODS])
-    done = {id(r): t for r in table.results if r.completed and (t := measured(r, "mean_ms")) is not None}
+    times = {id(r): t for r in table.results if r.completed and (t := measured(r, "mean_ms")) is not None}
     grid.notes = [_VOXELS_NOTE]
-    if done:
-        grid.notes += [f"Beside each time the error of its picture (lowest PSNR). {time_note(done, 'mean_ms')}",
+    if times:
+        grid.notes += [f"Beside each time the error of its picture (lowest PSNR). {time_note(times, 'mean_ms')}",
                        "Generation: median (lowest–highest) of the builds. Min-max and bitfield octrees are built once a run; the "
                        "distance map and the Boolean octree in every frame of a block whose transfer function is set anew each frame."]
     grid.notes.append("\"paper\": published for an AMD Radeon RX 6800 XT at 2160 x 2160 pixels, with the paper's own volumes.")
@@ -66,22 +68,13 @@ def _dataset_text(dataset: str) -> str:
 
 def time_cell(table: Measurements, dataset: str, configuration: str, method: str) -> str:
     paper = f"paper {published.time_ms(dataset, configuration, method):.2f}"
-    result = table.cells.get((dataset, configuration, method))
-    absent = _why_absent(result)
-    if absent:
-        return f"{absent}; {paper}"
-    return f"{measured(result, 'mean_ms').text}, {error_text(result)}; {paper}"
-
-
-def _why_absent(result: PointResult | None) -> str:
-    if result is None or result.any_run is None:
-        return "not measured"
-    return "" if result.completed else failure_text(result)
+    result = cell(table, dataset, configuration, method)
+    return f"{why_absent(result) or time_text(result)}; {paper}"
 
 
 def ratio_cell(table: Measurements, dataset: str, configuration: str, method: str) -> str:
     paper = f"paper {number_text(published.time_ratio(dataset, configuration, 'none', published.column_of(method)))}"
-    none, result = table.done(dataset, configuration, "none"), table.done(dataset, configuration, method)
+    none, result = done(table, dataset, configuration, "none"), done(table, dataset, configuration, method)
     if none is None or result is None:
         return f"not measured; {paper}"
     work = work_ratio(none, result)
@@ -98,8 +91,8 @@ def generation_cell(table: Measurements, dataset: str, method: str) -> str:
 
 def parameters_cell(table: Measurements, dataset: str, method: str) -> str:
     names = ("leaf", "bits", "initial_level", "texel")
-    done = [r for c in published.CONFIGURATIONS if (r := table.cells.get((dataset, c, method))) is not None]
-    texts = {parameters_text({n: parameter_of(r, n) for n in names}) for r in done} - {""}
+    known = [r for c in published.CONFIGURATIONS if (r := cell(table, dataset, c, method)) is not None]
+    texts = {parameters_text({n: parameter_of(r, n) for n in names}) for r in known} - {""}
     paper = published.TABLE1[dataset].parameters.get(published.column_of(method))
     if method == "none":
         return ""
@@ -133,9 +126,9 @@ def _csv_row(table: Measurements, dataset: str, configuration: str, method: str)
     row |= {f"published_{name}": value for name, value in parameters.items()}
     if method != "none" and (built := generation_of(table, dataset, method)) is not None:
         row |= {"generation_ms": built.value, "generation_low_ms": built.low, "generation_high_ms": built.high}
-    result = table.cells.get((dataset, configuration, method))
+    result = cell(table, dataset, configuration, method)
     if result is None or not result.completed:
-        return row | {"status": _why_absent(result)}
+        return row | {"status": why_absent(result)}
     return row | {"status": "completed"} | _measured_columns(table, result, dataset, configuration)
 
 
@@ -145,14 +138,9 @@ def _measured_columns(table: Measurements, result: PointResult, dataset: str, co
            "psnr_db": float("inf") if result.errors.get("identical") else result.errors.get("psnr_db"),
            "samples": result.counters.get("samples"), "node_tests": result.counters.get("node_tests"), "work": work_of(result)}
     row |= {name: parameter_of(result, name) for name in ("leaf", "bits", "initial_level")}
-    none = table.done(dataset, configuration, "none")
+    none = done(table, dataset, configuration, "none")
     if none is not None:
         ratio = time_ratio(none, result)
         row |= {"none_over_method_time": ratio.value, "time_low": ratio.low, "time_high": ratio.high, "time_bounds": ratio.kind,
                 "none_over_method_work": work_ratio(none, result)}
     return row
-
-
-def work_text(result: PointResult) -> str:
-    work = work_of(result)
-    return "not counted" if work is None else count_text(work)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...columns import ABSENT, number_text
-from ...points import PointResult, ratio_of
-from ...search.objective import measured
+from ..columns import ABSENT, number_text
+from ..points import PointResult, ratio_of
+from ..search.objective import measured
 
 HELD, NOT_HELD, UNDECIDED, NOT_MEASURED = "held", "not held", "not decidable", "not measured"
 
@@ -50,16 +50,11 @@ def time_ratio(a: PointResult, b: PointResult) -> Quantity:
     return Quantity(ratio.median, mean_a.low / mean_b.high, mean_a.high / mean_b.low, MEANS)
 
 
-def work_of(result: PointResult) -> float | None:
-    """Samples and node tests of a frame, also of the light's rays, which are exact."""
-    if "samples" not in result.counters:
-        return None
-    return sum(result.counters.get(name, 0.0) for name in ("samples", "node_tests", "shadow_samples", "shadow_node_tests"))
-
-
-def work_ratio(a: PointResult, b: PointResult) -> float | None:
-    work_a, work_b = work_of(a), work_of(b)
-    return None if work_a is None or not work_b else work_a / work_b
+def quotient(a: Quantity, b: Quantity, kind: str) -> Quantity:
+    """`a` over `b`, whose bounds are those of two measurements: the widest that they allow."""
+    if a.low is None or b.low is None or b.low <= 0:
+        return Quantity(a.value / b.value)
+    return Quantity(a.value / b.value, a.low / b.high, a.high / b.low, kind)
 
 
 def at_most(quantity: Quantity, limit: float) -> str:
@@ -77,6 +72,12 @@ def at_least(quantity: Quantity, limit: float) -> str:
     if quantity.low >= limit:
         return HELD
     return NOT_HELD if quantity.high < limit else UNDECIDED
+
+
+def above(quantity: Quantity, limit: float) -> str:
+    """Beyond doubt above the limit."""
+    verdict = at_most(quantity, limit)
+    return {HELD: NOT_HELD, NOT_HELD: HELD}.get(verdict, verdict)
 
 
 def within(quantity: Quantity, low: float, high: float) -> str:
