@@ -20,8 +20,8 @@ packages=(
   build-essential ca-certificates clang-14 clang-format-14 clang-tidy-14 cmake git ninja-build pkg-config
   # libraries
   glslang-dev glslang-tools libbenchmark-dev libcli11-dev libfmt-dev libglm-dev libgtest-dev libgmock-dev libimath-dev
-  libinsighttoolkit5-dev libopenexr-dev libopenvdb-dev libvulkan-dev libxxhash-dev nlohmann-json3-dev spirv-tools
-  vulkan-validationlayers zlib1g-dev
+  libinsighttoolkit5-dev libmeshoptimizer-dev libopenexr-dev libopenvdb-dev libvulkan-dev libxxhash-dev
+  nlohmann-json3-dev spirv-tools vulkan-validationlayers zlib1g-dev
   # analysis and tests
   chromium libbenchmark-tools openexr python3 python3-distributed python3-jinja2 python3-jsonschema python3-matplotlib
   python3-numpy python3-pandas python3-pytest python3-scipy python3-skimage valgrind

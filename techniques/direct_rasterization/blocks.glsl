@@ -11,13 +11,4 @@ layout(set = 0, binding = kBindingBlocks, scalar) uniform BlockBlock {
   BlockConstants grid;
 };
 
-// Items are numbered x fastest.
-ivec3 placeOf(uint item, ivec3 size) {
-  uint row = item / uint(size.x);
-  return ivec3(item - row * uint(size.x), row % uint(size.y), row / uint(size.y));
-}
-uint indexOf(ivec3 place, ivec3 size) {
-  return uint((place.z * size.y + place.y) * size.x + place.x);
-}
-
 #endif

@@ -75,10 +75,7 @@ void main() {
       gl_MeshVerticesEXT[target].gl_Position = clipPosition(frame.views[view], world, surface.near);
 #ifdef CLIP
       for (int plane = 0; plane < kMaxClippingPlanes; ++plane)
-        gl_MeshVerticesEXT[target].gl_ClipDistance[plane] =
-            uint(plane) < frame.clippingPlaneCount
-                ? dot(frame.clippingPlanes[plane].xyz, world) - frame.clippingPlanes[plane].w
-                : 1.0;
+        gl_MeshVerticesEXT[target].gl_ClipDistance[plane] = keptDistance(plane, world);
 #endif
       normalOutput[target] = normal;
       viewOutput[target] = view;

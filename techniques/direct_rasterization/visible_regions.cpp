@@ -55,7 +55,7 @@ void VisibleRegions::drawProxies(const Frame& frame, gpu::Commands& commands, co
                                  const gpu::BufferRange& blocks) {
   commands.barrier(gpu::kDrawWrite, gpu::kDrawWrite);
   {
-    const gpu::Rendering rendering(commands, raster.depthOnly(frame));
+    const gpu::Rendering rendering(commands, raster.depthOnly(frame, false));
     const gpu::Resource own[] = {visible()};
     drawList(commands, m_proxies, raster, m_list, blocks, own, chunkOf(commands.device()));
   }

@@ -9,10 +9,13 @@
 layout(local_size_x = kScanGroup) in;
 
 layout(set = 0, binding = 0, scalar) buffer CountsBlock {
-  uint counts[]; // behind `groups` of them their total
+  uint counts[];
 };
 layout(set = 0, binding = 1, scalar) writeonly buffer ArgumentsBlock {
   uvec3 arguments[]; // workgroups of each draw
+};
+layout(set = 0, binding = 2, scalar) readonly buffer SizesBlock {
+  uint sizes[];
 };
 layout(push_constant, scalar) uniform ScanPush {
   ScanConstants scan;
@@ -22,10 +25,11 @@ shared uint sums[kScanGroup];
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
+  uint groups = scan.sizeIndex == kNoIndex ? scan.groups : sizes[scan.sizeIndex];
   uint before = 0u;
-  for (uint first = 0u; first < scan.groups; first += uint(kScanGroup)) {
+  for (uint first = 0u; first < groups; first += uint(kScanGroup)) {
     uint index = first + lane;
-    uint own = index < scan.groups ? counts[index] : 0u;
+    uint own = index < groups ? counts[index] : 0u;
     sums[lane] = own;
     for (uint offset = 1u; offset < uint(kScanGroup); offset *= 2u) {
       barrier();
@@ -34,11 +38,11 @@ void main() {
       sums[lane] += other;
     }
     barrier();
-    if (index < scan.groups) counts[index] = before + sums[lane] - own;
+    if (index < groups) counts[index] = before + sums[lane] - own;
     before += sums[kScanGroup - 1];
     barrier();
   }
-  if (lane == 0u) counts[scan.groups] = before;
+  if (lane == 0u) counts[scan.totalIndex] = before;
   for (uint draw = lane; draw < scan.draws; draw += uint(kScanGroup)) {
     uint start = draw * scan.chunk;
     uint items = before > start ? min(before - start, scan.chunk) : 0u;

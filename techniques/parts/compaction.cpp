@@ -36,13 +36,14 @@ Scan::Scan(gpu::Device& device) {
   m_pipeline = {device, gpu::ComputePipelineDescription{.name = "scan",
                                                         .shader = {.path = "parts/compact_scan.comp.glsl"},
                                                         .layout = {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                                                                VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                                                                 VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
                                                                    .pushConstantBytes = sizeof(ScanConstants)}}};
 }
 
 void Scan::record(gpu::Commands& commands, const gpu::BufferRange& counts, const gpu::BufferRange& arguments,
-                  const ScanConstants& constants) const {
-  const gpu::Resource resources[] = {counts, arguments};
+                  const gpu::BufferRange& sizes, const ScanConstants& constants) const {
+  const gpu::Resource resources[] = {counts, arguments, sizes};
   commands.dispatch(m_pipeline, resources, gpu::bytesOf(constants), {1, 1, 1});
 }
 
@@ -67,8 +68,13 @@ void Compaction::record(gpu::Commands& commands, std::span<const gpu::Resource> 
   commands.barrier(kAnyShaderRead, gpu::kComputeWrite);
   commands.dispatch(m_count, all, gpu::bytesOf(constants), groups);
   commands.barrier(gpu::kComputeWrite, gpu::kComputeReadWrite);
-  m_scan.record(commands, m_counts.range(), m_arguments.range(),
-                {.groups = m_groups, .chunk = m_description.chunk, .draws = m_draws, .perTask = m_description.perTask});
+  m_scan.record(commands, m_counts.range(), m_arguments.range(), m_counts.range(),
+                {.groups = m_groups,
+                 .sizeIndex = kNoIndex,
+                 .totalIndex = m_groups,
+                 .chunk = m_description.chunk,
+                 .draws = m_draws,
+                 .perTask = m_description.perTask});
   commands.barrier(gpu::kComputeWrite, gpu::kComputeReadWrite);
   commands.dispatch(counting ? m_writeCounting : m_write, all, gpu::bytesOf(constants), groups);
   commands.barrier(gpu::kComputeWrite, kAnyShaderRead);

@@ -23,13 +23,14 @@ struct CompactionDescription {
   std::uint32_t chunk = 0;                ///< kept items of one draw, at most
 };
 
-/// Exclusive sums of counts in a buffer of `count + 1` words, in place, the total behind them; and workgroups of draws.
+/// Exclusive sums of counts, in place, and their total; and workgroups of draws.
 class Scan {
 public:
   explicit Scan(gpu::Device& device);
-  /// `arguments`: a uvec3 for each draw. Barriers around it are the caller's.
+  /// `arguments`: a uvec3 for each draw; `sizes`: what ScanConstants::sizeIndex is of. Barriers around it are the
+  /// caller's.
   void record(gpu::Commands& commands, const gpu::BufferRange& counts, const gpu::BufferRange& arguments,
-              const ScanConstants& constants) const;
+              const gpu::BufferRange& sizes, const ScanConstants& constants) const;
 
 private:
   gpu::Pipeline m_pipeline;

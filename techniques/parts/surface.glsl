@@ -98,9 +98,24 @@ vec3 vertexNormal(vec3 world) {
   return normalOfGradient(sampleGradient(volume, volumeGrid(frame), world, kShaderFiltering));
 }
 
+// Items are numbered x fastest.
+ivec3 placeOf(uint item, ivec3 size) {
+  uint row = item / uint(size.x);
+  return ivec3(item - row * uint(size.x), row % uint(size.y), row / uint(size.y));
+}
+uint indexOf(ivec3 place, ivec3 size) {
+  return uint((place.z * size.y + place.y) * size.x + place.x);
+}
+
 // Index of an item of an indirect dispatch or draw that may have rows.
 uint workgroupIndex(uvec3 workgroup) {
   return workgroup.y * uint(kDispatchWidth) + workgroup.x;
+}
+
+// How far a vertex is on the kept side of a clipping plane; planes that are not there keep everything.
+float keptDistance(int plane, vec3 world) {
+  if (uint(plane) >= frame.clippingPlaneCount) return 1.0;
+  return dot(frame.clippingPlanes[plane].xyz, world) - frame.clippingPlanes[plane].w;
 }
 
 int layerOf(uint view) {

@@ -81,7 +81,7 @@ SurfaceRaster::SurfaceRaster(const Preparation& preparation, int counters, Recor
   const std::vector<gpu::ShaderSource> shaders = {{"parts/surface_caps.vert.glsl", VK_SHADER_STAGE_VERTEX_BIT, {}},
                                                   {"parts/surface_caps.frag.glsl", VK_SHADER_STAGE_FRAGMENT_BIT, {}}};
   for (const bool counting : {false, true})
-    m_caps[counting] = makePipeline("caps", shaders, {}, 0, {}, false, counting);
+    m_caps[counting] = makePipeline("caps", shaders, {}, 0, {}, DepthUse::all, false, counting);
 }
 
 std::vector<VkDescriptorType> SurfaceRaster::bindings(std::span<const VkDescriptorType> own) {
@@ -100,29 +100,33 @@ gpu::Specialisation SurfaceRaster::variant(bool counting, gpu::Specialisation ow
 
 gpu::Pipeline SurfaceRaster::makePipeline(const std::string& name, std::vector<gpu::ShaderSource> shaders,
                                           std::span<const VkDescriptorType> own, std::uint32_t pushConstantBytes,
-                                          gpu::Specialisation ownVariant, bool clip, bool counting) const {
+                                          gpu::Specialisation ownVariant, DepthUse depth, bool clip,
+                                          bool counting) const {
   addVariants(shaders, clip, counting);
   gpu::GraphicsPipelineDescription description;
   description.name = name + (clip ? " clipped" : "") + (counting ? " counting" : "");
   description.shaders = std::move(shaders);
   description.layout = {.bindings = bindings(own), .pushConstantBytes = pushConstantBytes};
   description.specialisation = variant(counting, std::move(ownVariant));
-  description.colorFormats = {gpu::kColorFormat, gpu::kDepthFormat};
-  if (counting) description.colorFormats.push_back(gpu::kNormalFormat);
+  if (depth != DepthUse::prepass) description.colorFormats = {gpu::kColorFormat, gpu::kDepthFormat};
+  if (depth != DepthUse::prepass && counting) description.colorFormats.push_back(gpu::kNormalFormat);
   description.depthFormat = kDepth;
-  description.depthCompare = VK_COMPARE_OP_GREATER; // nearer is greater
+  // Nearer is greater.
+  description.depthCompare = depth == DepthUse::afterPrepass ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_GREATER;
+  description.depthWrite = depth != DepthUse::afterPrepass;
   return {*m_device, description};
 }
 
 SurfacePipelines SurfaceRaster::makePipelines(const std::string& name, const std::vector<gpu::ShaderSource>& shaders,
                                               std::span<const VkDescriptorType> own, std::uint32_t pushConstantBytes,
-                                              const gpu::Specialisation& ownVariant) const {
+                                              const gpu::Specialisation& ownVariant, DepthUse depth) const {
   std::vector<gpu::ShaderSource> all = shaders;
-  all.push_back({"parts/surface.frag.glsl", VK_SHADER_STAGE_FRAGMENT_BIT, {}});
+  if (depth != DepthUse::prepass) all.push_back({"parts/surface.frag.glsl", VK_SHADER_STAGE_FRAGMENT_BIT, {}});
   SurfacePipelines pipelines;
   for (const bool clip : {false, true})
     for (const bool counting : {false, true})
-      pipelines.variants[clip][counting] = makePipeline(name, all, own, pushConstantBytes, ownVariant, clip, counting);
+      pipelines.variants[clip][counting] =
+          makePipeline(name, all, own, pushConstantBytes, ownVariant, depth, clip, counting);
   return pipelines;
 }
 
@@ -166,8 +170,7 @@ std::vector<gpu::Resource> SurfaceRaster::resources(std::span<const gpu::Resourc
 
 gpu::RenderingDescription SurfaceRaster::rendering(const Frame& frame, bool clear) const {
   const gpu::Target& target = *frame.target;
-  gpu::RenderingDescription description = depthOnly(frame);
-  description.depth.clear = clear;
+  gpu::RenderingDescription description = depthOnly(frame, clear);
   const float infinity = std::numeric_limits<float>::infinity();
   description.colors = {{.view = target.color.view(), .clear = clear},
                         {.view = target.distance.view(), .clear = clear, .value = glm::vec4(infinity)}};
@@ -175,10 +178,10 @@ gpu::RenderingDescription SurfaceRaster::rendering(const Frame& frame, bool clea
   return description;
 }
 
-gpu::RenderingDescription SurfaceRaster::depthOnly(const Frame& frame) const {
+gpu::RenderingDescription SurfaceRaster::depthOnly(const Frame& frame, bool clear) const {
   return {.size = {frame.target->width, frame.target->height},
           .layers = static_cast<std::uint32_t>(frame.target->views),
-          .depth = {.view = m_depth.view()}};
+          .depth = {.view = m_depth.view(), .clear = clear}};
 }
 
 bool SurfaceRaster::hasCaps(const FrameInputs& inputs) const {

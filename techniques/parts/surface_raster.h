@@ -15,6 +15,13 @@
 
 namespace volmark::parts {
 
+/// How a draw treats depth.
+enum class DepthUse {
+  all,          ///< tests and writes
+  prepass,      ///< that alone, without colours
+  afterPrepass, ///< draws what the prepass left
+};
+
 /// Of one technique's draw: with or without clipping planes, timed or counting.
 struct SurfacePipelines {
   gpu::Pipeline variants[2][2];
@@ -33,7 +40,7 @@ public:
   /// surface.frag.glsl.
   SurfacePipelines makePipelines(const std::string& name, const std::vector<gpu::ShaderSource>& shaders,
                                  std::span<const VkDescriptorType> own, std::uint32_t pushConstantBytes,
-                                 const gpu::Specialisation& ownVariant = {}) const;
+                                 const gpu::Specialisation& ownVariant = {}, DepthUse depth = DepthUse::all) const;
   static const gpu::Pipeline& choose(const SurfacePipelines& pipelines, const Frame& frame);
 
   /// Before the first pass of a frame: its constants; counters are zero again in counting frames.
@@ -45,8 +52,7 @@ public:
 
   /// Colour, distance, in counting frames normals, and depth.
   gpu::RenderingDescription rendering(const Frame& frame, bool clear) const;
-  /// Depth alone, kept.
-  gpu::RenderingDescription depthOnly(const Frame& frame) const;
+  gpu::RenderingDescription depthOnly(const Frame& frame, bool clear) const;
 
   /// Whether anything is solid where a ray may enter: never said no wrongly.
   bool hasCaps(const FrameInputs& inputs) const;
@@ -64,7 +70,7 @@ private:
   SurfaceConstants constantsOf(const FrameInputs& inputs) const;
   gpu::Pipeline makePipeline(const std::string& name, std::vector<gpu::ShaderSource> shaders,
                              std::span<const VkDescriptorType> own, std::uint32_t pushConstantBytes,
-                             gpu::Specialisation ownVariant, bool clip, bool counting) const;
+                             gpu::Specialisation ownVariant, DepthUse depth, bool clip, bool counting) const;
 
   gpu::Device* m_device;
   const Scene* m_scene;

@@ -39,13 +39,17 @@ const int kCompactGroup = 256;    // items of a workgroup
 const int kScanGroup = 256;       // invocations of the one workgroup that scans
 const int kDispatchWidth = 32768; // workgroups along x; the rest lie along y
 
+const uint kNoIndex = 0xffffffffu;
+
 struct CompactConstants {
   uint items;
 };
 
-// Of the scan: sums of `groups` counts; their total follows them. Draws of at most `chunk` items each.
+// Of the scan: sums of counts. Draws of at most `chunk` items each.
 struct ScanConstants {
-  uint groups;
+  uint groups;     // how many counts, unless `sizeIndex` says where that stands
+  uint sizeIndex;  // in the buffer of sizes, or kNoIndex
+  uint totalIndex; // where the total goes, behind the counts
   uint chunk;   // items of a draw
   uint draws;   // arguments to be written
   uint perTask; // items of a task (or mesh) workgroup
@@ -53,7 +57,7 @@ struct ScanConstants {
 
 #ifdef __cplusplus
 static_assert(sizeof(SurfaceConstants) == 16);
-static_assert(sizeof(ScanConstants) == 16);
+static_assert(sizeof(ScanConstants) == 24);
 } // namespace volmark::parts
 #endif
 

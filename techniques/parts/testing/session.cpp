@@ -102,14 +102,14 @@ Session::Session(const TechniqueFactory& factory, const Scene& scene, const Para
   static_cast<void>(registered);
   m_target = std::make_unique<gpu::Target>(device(), size.width, size.height, size.views, factory.info.layers);
   m_technique = factory.create();
-  const std::uint64_t before = device().ledger().totalBytes();
+  m_before = device().ledger().totalBytes();
   PlainRecorder recorder(m_commands);
   m_commands.begin();
   m_target->initialise(m_commands);
   m_technique->prepare({.scene = m_scene, .parameters = m_parameters, .size = size, .device = &device()}, recorder);
   m_commands.submit();
   m_commands.wait();
-  m_preparedBytes = device().ledger().totalBytes() - before;
+  m_preparedBytes = addedBytes();
   reset();
 }
 

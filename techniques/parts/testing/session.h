@@ -67,6 +67,8 @@ public:
   const Technique& technique() const { return *m_technique; }
   /// Added to the device's ledger by prepare.
   std::uint64_t preparedBytes() const { return m_preparedBytes; }
+  /// And since then, too.
+  std::uint64_t addedBytes() const { return device().ledger().totalBytes() - m_before; }
 
 private:
   Scene m_scene;
@@ -77,6 +79,7 @@ private:
   std::unique_ptr<Technique> m_technique;
   std::shared_ptr<const TransferFunction> m_drawnFunction;
   std::uint64_t m_frame = 0;
+  std::uint64_t m_before = 0; ///< the ledger's bytes without the technique
   std::uint64_t m_preparedBytes = 0;
 };
 

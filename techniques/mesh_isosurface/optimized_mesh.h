@@ -1,0 +1,9 @@
+#pragma once
+
+#include "volmark/technique.h"
+
+namespace volmark::mesh_isosurface {
+
+TechniqueFactory optimizedMesh();
+
+} // namespace volmark::mesh_isosurface
