@@ -3,6 +3,7 @@
 #include "image/exr.h"
 #include "reference/reference.h"
 #include "scenario/scenario.h"
+#include "surface/write_mesh.h"
 #include "volmark/error.h"
 #include "worker/session.h"
 
@@ -31,6 +32,7 @@ struct RenderArguments {
   bool validate = false;
   double maximumGib = kDefaultMaximumGib;
   std::string output;
+  std::string mesh;
 };
 
 nlohmann::json parseSize(const std::string& text) {
@@ -59,9 +61,21 @@ std::vector<Picture> drawReference(const PointSettings& settings, const Scene& s
   return pictures;
 }
 
+void exportMesh(const RenderArguments& arguments, Session& session) {
+  const std::optional<SurfaceMesh> mesh = session.technique().surface();
+  if (!mesh)
+    throw InputError(fmt::format("--mesh: the technique {} makes no mesh; marching_cubes and optimized_mesh do",
+                                 arguments.technique));
+  writeMesh(arguments.mesh, *mesh, fmt::format("volmark {} {}", arguments.technique, session.settings().sceneName));
+  fmt::print("{}: {} vertices, {} triangles\n", arguments.mesh, mesh->positions.size(), mesh->triangles.size());
+}
+
 int render(const RenderArguments& arguments) {
   if (arguments.volume.empty() == arguments.scene.empty())
     throw InputError("render: give either --volume FILE or --scene NAME (volmark list shows the scenes)");
+  if (!arguments.mesh.empty()) requireMeshEnding(arguments.mesh);
+  if (!arguments.mesh.empty() && arguments.reference)
+    throw InputError("--mesh: the reference makes no mesh; leave --reference out");
   const Places places = findPlaces();
   const TechniqueCatalogue catalogue = loadCatalogue();
   const Point point = makePoint(settingsOf(arguments), arguments.assignments, catalogue, places.scenes);
@@ -87,6 +101,7 @@ int render(const RenderArguments& arguments) {
       session.addLayers(pictures);
     }
     time = fmt::format(", {:.1f} ms", frame.endMs - frame.startMs);
+    if (!arguments.mesh.empty()) exportMesh(arguments, session);
     if (session.device())
       for (const std::string& message : session.device()->validationMessages())
         fmt::print(stderr, "validation: {}\n", message);
@@ -123,6 +138,8 @@ void addRenderCommand(CLI::App& app, int& exitCode) {
   command->add_option("--device", arguments->device, "Index or part of the name (volmark device)");
   command->add_flag("--validate", arguments->validate, "Vulkan validation layers");
   command->add_option("--max-volume-gib", arguments->maximumGib, "Largest volume to load")->capture_default_str();
+  command->add_option("--mesh", arguments->mesh,
+                      "Also write the surface as .ply or .glb (glTF): marching_cubes, optimized_mesh");
   command->add_option("-o,--output", arguments->output, "EXR file to write")->required();
   command->callback([arguments, &exitCode] { exitCode = render(*arguments); });
 }

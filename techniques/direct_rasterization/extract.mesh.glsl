@@ -15,11 +15,13 @@ out gl_MeshPerVertexEXT {
   float gl_ClipDistance[kMaxClippingPlanes];
 #endif
 } gl_MeshVerticesEXT[];
+layout(location = 0) out vec3 normalOutput[];
+#if VIEWS > 1
 perprimitiveEXT out gl_MeshPerPrimitiveEXT {
   perprimitiveEXT int gl_Layer;
 } gl_MeshPrimitivesEXT[];
-layout(location = 0) out vec3 normalOutput[];
 layout(location = 1) out flat uint viewOutput[];
+#endif
 
 shared uint vertexEdges[VERTEX_LIMIT]; // cell (8 bits), edge
 shared uint cellSizes[kTaskThreads];   // vertices, triangles << 16
@@ -61,7 +63,9 @@ void main() {
     for (uint view = 0u; view < VIEWS; ++view) {
       uint triangle = view * triangleTotal + firstTriangle + i;
       gl_PrimitiveTriangleIndicesEXT[triangle] = view * vertexCount + indices;
+#if VIEWS > 1
       gl_MeshPrimitivesEXT[triangle].gl_Layer = layerOf(view);
+#endif
     }
   }
   barrier();
@@ -78,7 +82,9 @@ void main() {
         gl_MeshVerticesEXT[target].gl_ClipDistance[plane] = keptDistance(plane, world);
 #endif
       normalOutput[target] = normal;
+#if VIEWS > 1
       viewOutput[target] = view;
+#endif
     }
   }
   if (kCounting && lane == 0u) {

@@ -75,9 +75,7 @@ void MeshShaderIsosurface::prepare(const Preparation& preparation, Recorder& rec
     }
     const std::int64_t vertices = parameters.integer("vertex_limit");
     const std::vector<std::pair<std::string, std::string>> macros = {
-        {"VERTEX_LIMIT", std::to_string(vertices)},
-        {"TRIANGLE_LIMIT", std::to_string(triangleLimit(vertices))},
-        {"VIEWS", std::to_string(preparation.size.views)}};
+        {"VERTEX_LIMIT", std::to_string(vertices)}, {"TRIANGLE_LIMIT", std::to_string(triangleLimit(vertices))}};
     gpu::Specialisation variant;
     variant.set(kIdBlockX, settings.cells.x).set(kIdBlockY, settings.cells.y).set(kIdBlockZ, settings.cells.z);
     m_extract =

@@ -1,4 +1,4 @@
-// Vertices of an indexed mesh. Macro: CLIP, with clipping planes.
+// Vertices of an indexed mesh. Macros: VIEWS, of the picture; CLIP, with clipping planes.
 // One invocation is one vertex of one view (instance). surface.frag.glsl runs next, or nothing.
 #version 460
 
@@ -18,13 +18,19 @@ out gl_PerVertex {
 };
 #endif
 layout(location = 0) out vec3 normal;
+#if VIEWS > 1
 layout(location = 1) out flat uint view;
+#else
+const uint view = 0u;
+#endif
 
 void main() {
   Vertex vertex = Vertices(mesh.vertices).vertex[gl_VertexIndex];
-  view = uint(gl_InstanceIndex);
   normal = vertex.normal;
+#if VIEWS > 1
+  view = uint(gl_InstanceIndex);
   gl_Layer = layerOf(view);
+#endif
   gl_Position = clipPosition(frame.views[view], vertex.position, surface.near);
 #ifdef CLIP
   for (int plane = 0; plane < kMaxClippingPlanes; ++plane) gl_ClipDistance[plane] = keptDistance(plane, vertex.position);

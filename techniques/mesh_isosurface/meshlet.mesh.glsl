@@ -29,11 +29,13 @@ out gl_MeshPerVertexEXT {
   float gl_ClipDistance[kMaxClippingPlanes];
 #endif
 } gl_MeshVerticesEXT[];
+layout(location = 0) out vec3 normalOutput[];
+#if VIEWS > 1
 perprimitiveEXT out gl_MeshPerPrimitiveEXT {
   perprimitiveEXT int gl_Layer;
 } gl_MeshPrimitivesEXT[];
-layout(location = 0) out vec3 normalOutput[];
 layout(location = 1) out flat uint viewOutput[];
+#endif
 
 void main() {
   uint index = workgroupIndex(gl_WorkGroupID);
@@ -50,7 +52,9 @@ void main() {
         gl_MeshVerticesEXT[target].gl_ClipDistance[plane] = keptDistance(plane, vertex.position);
 #endif
       normalOutput[target] = vertex.normal;
+#if VIEWS > 1
       viewOutput[target] = view;
+#endif
     }
   }
   for (uint i = gl_LocalInvocationIndex; i < meshlet.triangles; i += uint(kMeshletThreads)) {
@@ -59,7 +63,9 @@ void main() {
     for (uint view = 0u; view < VIEWS; ++view) {
       uint target = view * meshlet.triangles + i;
       gl_PrimitiveTriangleIndicesEXT[target] = view * meshlet.vertices + corners;
+#if VIEWS > 1
       gl_MeshPrimitivesEXT[target].gl_Layer = layerOf(view);
+#endif
     }
   }
 }

@@ -72,9 +72,8 @@ void OptimizedMeshTechnique::prepare(const Preparation& preparation, Recorder& r
     if (asksForMeshShaders(preparation.parameters)) {
       const VkDescriptorType own[] = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                       VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
-      const std::vector<gpu::ShaderSource> shaders = {{"mesh_isosurface/meshlet.mesh.glsl",
-                                                       VK_SHADER_STAGE_MESH_BIT_EXT,
-                                                       {{"VIEWS", std::to_string(preparation.size.views)}}}};
+      const std::vector<gpu::ShaderSource> shaders = {
+          {"mesh_isosurface/meshlet.mesh.glsl", VK_SHADER_STAGE_MESH_BIT_EXT, {}}};
       m_meshlets = m_surface->raster().makePipelines("meshlets", shaders, own, sizeof(MeshConstants));
     } else {
       m_indexed.emplace(m_surface->raster(), false);

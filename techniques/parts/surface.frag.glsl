@@ -1,5 +1,5 @@
 // Shades a rasterised isosurface.
-// Macro: COUNTING, in counting frames: the normal is a third output.
+// Macros: VIEWS, of the picture; COUNTING, in counting frames: the normal is a third output.
 // One invocation is one fragment. Nothing runs after it.
 #version 460
 
@@ -13,7 +13,11 @@ layout(constant_id = kIdSurfaceShadingModel) const uint kShadingModel = 0u;
 VOLMARK_FRAME(kSurfaceFrame)
 
 layout(location = 0) in vec3 normal;    // unit at vertices
+#if VIEWS > 1
 layout(location = 1) in flat uint view;
+#else
+const uint view = 0u;
+#endif
 layout(location = 0) out vec4 color;
 layout(location = 1) out float distance; // along the view direction
 #ifdef COUNTING

@@ -52,8 +52,9 @@ bool isInBox(const Grid& grid, const glm::dvec3& eye) {
          glm::all(glm::lessThanEqual(eye, grid.boxMaximum() + slack));
 }
 
-void addVariants(std::vector<gpu::ShaderSource>& shaders, bool clip, bool counting) {
+void addVariants(std::vector<gpu::ShaderSource>& shaders, int views, bool clip, bool counting) {
   for (gpu::ShaderSource& shader : shaders) {
+    shader.macros.emplace_back("VIEWS", std::to_string(views));
     if (clip && shader.stage != VK_SHADER_STAGE_FRAGMENT_BIT) shader.macros.emplace_back("CLIP", "1");
     if (counting) shader.macros.emplace_back("COUNTING", "1");
   }
@@ -68,7 +69,7 @@ SurfaceRaster::SurfaceRaster(const Preparation& preparation, int counters, Recor
       m_counters(*preparation.device, std::max(counters, 1)),
       m_table(*preparation.device, {"marching_cubes_table", 256 * sizeof(std::uint64_t),
                                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT}),
-      m_depth(makeDepth(*preparation.device, preparation.size)) {
+      m_depth(makeDepth(*preparation.device, preparation.size)), m_views(preparation.size.views) {
   registerPartsShaders();
   for (int step = 0; step < preparation.scene.volume->timeSteps(); ++step)
     m_boundaryMaximum.push_back(boundaryMaximum(preparation.scene, step));
@@ -102,7 +103,7 @@ gpu::Pipeline SurfaceRaster::makePipeline(const std::string& name, std::vector<g
                                           std::span<const VkDescriptorType> own, std::uint32_t pushConstantBytes,
                                           gpu::Specialisation ownVariant, DepthUse depth, bool clip,
                                           bool counting) const {
-  addVariants(shaders, clip, counting);
+  addVariants(shaders, m_views, clip, counting);
   gpu::GraphicsPipelineDescription description;
   description.name = name + (clip ? " clipped" : "") + (counting ? " counting" : "");
   description.shaders = std::move(shaders);

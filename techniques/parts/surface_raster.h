@@ -36,7 +36,8 @@ public:
   static std::vector<VkDescriptorType> bindings(std::span<const VkDescriptorType> own);
   /// Constants of all surface shaders beside the technique's own.
   gpu::Specialisation variant(bool counting, gpu::Specialisation own = {}) const;
-  /// Pipelines from shaders before rasterisation (macros CLIP, with clipping planes, and COUNTING) and
+  /// Pipelines from shaders before rasterisation (macros VIEWS, of the picture, CLIP, with clipping planes, and
+  /// COUNTING) and
   /// surface.frag.glsl.
   SurfacePipelines makePipelines(const std::string& name, const std::vector<gpu::ShaderSource>& shaders,
                                  std::span<const VkDescriptorType> own, std::uint32_t pushConstantBytes,
@@ -78,6 +79,7 @@ private:
   gpu::CounterBuffer m_counters;
   gpu::Buffer m_table;
   gpu::Image m_depth;
+  int m_views;
   mutable bool m_depthIsNew = true;
   gpu::Pipeline m_caps[2];               ///< timed, counting
   std::vector<double> m_boundaryMaximum; ///< of each time step, normalised
