@@ -50,9 +50,9 @@ struct ScanConstants {
   uint groups;     // how many counts, unless `sizeIndex` says where that stands
   uint sizeIndex;  // in the buffer of sizes, or kNoIndex
   uint totalIndex; // where the total goes, behind the counts
-  uint chunk;   // items of a draw
-  uint draws;   // arguments to be written
-  uint perTask; // items of a task (or mesh) workgroup
+  uint chunk;      // items of a draw
+  uint draws;      // arguments to be written
+  uint perTask;    // items of a task (or mesh) workgroup
 };
 
 #ifdef __cplusplus

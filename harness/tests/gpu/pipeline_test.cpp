@@ -22,11 +22,10 @@ protected:
     commands.begin();
     target.initialise(commands);
     {
-      const Rendering rendering(commands,
-                                {.size = {kSide, kSide},
-                                 .layers = static_cast<std::uint32_t>(target.views),
-                                 .viewMask = viewMask,
-                                 .colors = {{.view = target.color.view(), .clear = true, .value = clear}}});
+      const Rendering rendering(commands, {.size = {kSide, kSide},
+                                           .layers = static_cast<std::uint32_t>(target.views),
+                                           .viewMask = viewMask,
+                                           .colors = {{.view = target.color.view(), .clear = true, .value = clear}}});
       record(commands);
     }
     commands.submit();
