@@ -116,6 +116,32 @@ TEST_P(Culling, ChangesNoPixelOnAnyFrame) {
 
 INSTANTIATE_TEST_SUITE_P(All, Culling, testing::ValuesIn(cases()), [](const auto& one) { return one.param.name; });
 
+TEST(VisibleSets, RegionsThatHoldTheEyeAreDrawn) {
+  REQUIRE_MESH_SHADERS();
+  // No proxy can show them: it would have to be nearer than the near plane.
+  Numbers numbers(41);
+  const Scene scene =
+      parts::makeScene(parts::makeVolume(parts::ball, glm::ivec3(64), ScalarType::uint16), ShadingModel::gooch);
+  const double level = 0.4;
+  const Range range = scene.volume->dataRange();
+  const double radius = 32 * (1 - (range.minimum + level * (range.maximum - range.minimum)) / 65535);
+  Session all = makeSession(scene, {}, false, 1);
+  Session culled = makeSession(scene, {}, true, 1);
+  int near = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    const glm::dvec3 out = glm::normalize(glm::dvec3(numbers.unit(), numbers.unit(), numbers.unit()) - 0.5);
+    const glm::dvec3 eye = (radius + numbers.between(0.5, 4)) * out;
+    const glm::dvec3 side = 4.0 * glm::dvec3(numbers.unit() - 0.5, numbers.unit() - 0.5, numbers.unit() - 0.5);
+    FrameInputs inputs = parts::makeInputs(
+        {.pose = Pose::lookAt(eye, radius * out + side), .frustum = Frustum::symmetric(60, kWidth, kHeight)}, level);
+    const Drawn expected = all.draw(inputs);
+    ASSERT_TRUE(parts::identical(culled.draw(inputs).pictures[0], expected.pictures[0])) << frame;
+    near += std::any_of(expected.pictures[0].distance.begin(), expected.pictures[0].distance.end(),
+                        [](float d) { return d < 4; });
+  }
+  EXPECT_GT(near, 30);
+}
+
 /// A sheet across the box, all of which is seen from the front.
 Scene sheet() {
   return parts::makeScene(parts::makeVolume(

@@ -135,6 +135,22 @@ TEST_P(Skipping, ChangesNoBit) {
 
 INSTANTIATE_TEST_SUITE_P(All, Skipping, testing::ValuesIn(cases()), [](const auto& one) { return one.param.name; });
 
+TEST(IsoOctree, SamplesThatAreTheIsovalueAreInside) {
+  // A cube of the largest voxel value: no sample exceeds the isovalue, and no node's range does.
+  const auto cube = [](const glm::dvec3& p) {
+    return glm::all(glm::lessThan(glm::abs(p - 0.5), glm::dvec3(0.3))) ? 1.0 : 0.0;
+  };
+  for (const ScalarType type : {ScalarType::uint8, ScalarType::float32}) {
+    const Scene scene = parts::makeScene(parts::makeVolume(cube, glm::ivec3(40), type), ShadingModel::gooch);
+    const FrameInputs inputs = parts::makeInputs(parts::lookAtBox(scene.volume->grid(), 20, 30, kWidth, kHeight), 1.0);
+    const Drawn expected =
+        parts::drawOnce(plainMarching(), scene, inputs, kWidth, kHeight, {{"bisections", std::int64_t(3)}}, true);
+    const Drawn found = parts::drawOnce(isoOctree(), scene, inputs, kWidth, kHeight, {}, true);
+    EXPECT_TRUE(parts::identical(found.pictures[0], expected.pictures[0])) << nameOf(type);
+    EXPECT_GT(found.counters.at("hits"), 100u);
+  }
+}
+
 TEST(IsoOctree, BothEyesEqualTwoPictures) {
   for (const char* stage : {"compute", "fragment"}) {
     Numbers numbers(3);
