@@ -28,6 +28,7 @@ _EPILOG = """examples:
   python3 -m volmark_analysis bench new.json --old old.json
   python3 -m volmark_analysis gate --base origin/main
   python3 -m volmark_analysis paper bitfield_octree_2021 --table1 results/bitfield_octree_2021_table1 -o results/paper
+  python3 -m volmark_analysis paper direct_rasterization results/direct_rasterization_fig1 -o results/paper
 
 DIR is an experiment folder: the one with experiment.json and runs/. Unusable input gives one line and exit code 2.
 The statistics are defined in harness/README.md, section 6, and at the end of every report."""

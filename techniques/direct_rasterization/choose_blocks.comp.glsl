@@ -7,7 +7,7 @@
 
 #include <direct_rasterization/blocks.glsl>
 
-layout(constant_id = kIdBlockX) const int kChoice = kChooseOccupied;
+layout(constant_id = kIdChoice) const int kChoice = kChooseOccupied;
 
 layout(set = 0, binding = kBindingRanges) uniform sampler3D ranges;
 layout(set = 0, binding = kBindingPrevious, scalar) readonly buffer PreviousBlock {

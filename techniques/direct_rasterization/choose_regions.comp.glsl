@@ -1,5 +1,5 @@
 // Occupied regions whose visibility proxies have to find out. Those that reach behind the near plane of a view, or hold
-// its eye, are visible without a proxy (Kreskowski et al. 2022, section 3.5).
+// its eye, are visible without a proxy (not in the paper, whose views were from outside).
 // Macros: those of parts/compact.glsl.
 // One invocation is one region. proxies.mesh.glsl runs next.
 #version 460

@@ -12,7 +12,7 @@ parts::CompactionDescription describe(const parts::SurfaceRaster& raster, const 
   description.name = name;
   description.shader = {.path = shader};
   gpu::Specialisation own;
-  own.set(kIdBlockX, static_cast<std::int32_t>(choice));
+  own.set(kIdChoice, static_cast<std::int32_t>(choice));
   description.timed = raster.variant(false, own);
   description.counting = raster.variant(true, own);
   const VkDescriptorType bindings[] = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,

@@ -17,7 +17,8 @@ namespace {
 constexpr VkDescriptorType kDrawBindings[] = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                               VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
 
-/// The most triangles that so many vertices of cells can make: five of seven (tests/marching_cubes_table_test.cpp).
+/// The most triangles that so many vertices of cells can make: five of seven
+/// (parts/tests/marching_cubes_table_test.cpp).
 std::int64_t triangleLimit(std::int64_t vertices) {
   return vertices * 5 / 7;
 }
@@ -234,6 +235,10 @@ std::optional<std::string> whyUnsupported(const Scene& scene, const ParameterVal
                        "{} for all views.",
                        vertices, triangleLimit(vertices), size.views, facts.maximumMeshVertices,
                        facts.maximumMeshPrimitives);
+  if (parameters.boolean("culling") &&
+      4u * kTaskThreads * static_cast<unsigned>(size.views) > facts.maximumMeshVertices)
+    return fmt::format("culling: proxies for {} views need {} vertices, allowed by the device: {}.", size.views,
+                       4 * kTaskThreads * size.views, facts.maximumMeshVertices);
   const Grid& grid = scene.volume->grid();
   const glm::ivec3 blocks = parts::blocksOf(parts::cellsOf(grid), blockSettings(parameters).cells);
   const std::uint64_t bytes = std::uint64_t(countOf(blocks)) * sizeof(uint);

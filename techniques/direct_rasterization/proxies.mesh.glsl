@@ -49,7 +49,8 @@ void project(ivec3 region, ViewConstants view, out vec4 box, out float depth) {
   }
   vec2 grow = 2.0 * grid.grow / vec2(frame.size);
   box = clamp(box + vec4(-grow, grow), -2.0, 2.0);
-  // A little nearer than any rounding makes a fragment of the surface.
+  // A little nearer than any rounding makes a fragment of the surface: of places in the world, and of depth.
+  nearest = max(nearest - 1e-6 * distance(frame.boxMinimum, frame.boxMaximum), surface.near);
   depth = min(surface.near / nearest * (1.0 + 1e-5), 1.0);
 }
 

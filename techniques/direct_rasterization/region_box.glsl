@@ -9,7 +9,8 @@ const float kNearSlack = 1.1;
 
 vec3 regionCorner(ivec3 region, int corner) {
   ivec3 place = region + ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
-  return frame.boxMinimum + vec3(min(place * grid.regionCells, grid.cells)) * frame.spacing;
+  precise vec3 world = frame.boxMinimum + vec3(min(place * grid.regionCells, grid.cells)) * frame.spacing;
+  return world;
 }
 
 // Smallest and largest distance along the view direction.

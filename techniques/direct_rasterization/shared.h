@@ -27,6 +27,7 @@ const int kBindingFlags = kSurfaceOwn + 3;  // of proxies: kBindingVisible
 const int kIdBlockX = kIdSurfaceOwn; // cells of a block along each axis
 const int kIdBlockY = kIdSurfaceOwn + 1;
 const int kIdBlockZ = kIdSurfaceOwn + 2;
+const int kIdChoice = kIdSurfaceOwn + 3; // of choose_blocks.comp.glsl
 
 // What a block must be to be drawn.
 const int kChooseOccupied = 0; // anything

@@ -5,13 +5,17 @@
 namespace volmark::mesh_isosurface {
 
 ExtractedSurface::ExtractedSurface(const Preparation& preparation, int counters, Recorder& recorder)
-    : m_raster(preparation, counters, recorder), m_extractor(*preparation.device, preparation.scene, m_raster) {
+    : m_raster(preparation, counters, recorder) {
+  {
+    const Pass pass = recorder.hostPass("pipelines");
+    m_extractor.emplace(*preparation.device, preparation.scene, m_raster);
+  }
   buildRanges(0, recorder);
 }
 
 void ExtractedSurface::buildRanges(int timeStep, Recorder& recorder) {
   const Pass pass = recorder.pass("build_ranges");
-  m_extractor.buildRanges(recorder.gpu(), m_raster.voxels(timeStep));
+  m_extractor->buildRanges(recorder.gpu(), m_raster.voxels(timeStep));
   m_builtStep = timeStep;
   m_isovalue.reset();
 }
@@ -21,7 +25,7 @@ bool ExtractedSurface::update(const FrameInputs& inputs, Recorder& recorder) {
   if (m_isovalue == inputs.isovalue) return false;
   const Pass pass = recorder.pass("extract");
   m_raster.beginUpdate(inputs, recorder);
-  m_extractor.extract(recorder.gpu(), m_raster);
+  m_extractor->extract(recorder.gpu(), m_raster);
   m_isovalue = inputs.isovalue;
   return true;
 }
@@ -43,7 +47,7 @@ std::vector<PassDescriptor> extractionGeneration() {
   return {{"upload", "The volume's voxels to the GPU."},
           {"upload_table", "The table of marching cubes."},
           {"build_ranges", "Smallest and largest voxel of each block."},
-          {"pipelines", "Pipelines of the draw."}};
+          {"pipelines", "Pipelines and buffers."}};
 }
 
 std::optional<std::string> whyExtractionUnsupported(const Scene& scene, const ParameterValues& parameters,

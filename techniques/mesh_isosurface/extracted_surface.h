@@ -12,7 +12,7 @@ namespace volmark::mesh_isosurface {
 
 class ExtractedSurface {
 public:
-  /// Generation passes "upload", "upload_table" and "build_ranges".
+  /// Generation passes "upload", "upload_table", "pipelines" and "build_ranges".
   ExtractedSurface(const Preparation& preparation, int counters, Recorder& recorder);
 
   /// Passes "build_ranges" and "extract" where needed. True if the surface is a new one.
@@ -20,13 +20,13 @@ public:
 
   parts::SurfaceRaster& raster() { return m_raster; }
   const parts::SurfaceRaster& raster() const { return m_raster; }
-  const Extractor& extractor() const { return m_extractor; }
+  const Extractor& extractor() const { return *m_extractor; }
 
 private:
   void buildRanges(int timeStep, Recorder& recorder);
 
   parts::SurfaceRaster m_raster;
-  Extractor m_extractor;
+  std::optional<Extractor> m_extractor;
   std::optional<int> m_builtStep;
   std::optional<double> m_isovalue;
 };

@@ -114,13 +114,18 @@ void Extractor::extract(gpu::Commands& commands, const parts::SurfaceRaster& ras
 
   std::uint32_t totals[2];
   std::memcpy(totals, m_totals.mapped().data(), sizeof(totals));
+  // The scan says kNoIndex where a sum is beyond 32 bits; a draw has as many indices at most.
+  if (totals[0] == parts::kNoIndex || totals[1] >= parts::kNoIndex / 3) {
+    m_vertexCount = m_triangleCount = 0;
+    throw UnsupportedError("the surface has more vertices, or more corners of triangles, than 32 bits count");
+  }
   m_vertexCount = totals[0];
   m_triangleCount = totals[1];
   reserve();
   constants.vertices = wordsOf(m_vertices.address());
   constants.indices = wordsOf(m_indices.address());
   // Earlier frames may still be drawing what is overwritten.
-  commands.barrier(gpu::kAnything, gpu::kComputeWrite);
+  commands.barrier(gpu::kAnything, gpu::kComputeReadWrite);
   commands.dispatchIndirect(m_write, resources, gpu::bytesOf(constants), m_chosen.arguments(0));
   commands.barrier(gpu::kComputeWrite,
                    {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,

@@ -57,7 +57,7 @@ TechniqueInfo describe() {
           .paper = "Lorensen, Cline: Marching Cubes: A High Resolution 3D Surface Construction Algorithm, 1987",
           .section = "as \"MC\" of Nysjö, Malmberg, Nyström: RayCaching, 2019, section 4",
           .draws = Draws::isosurface,
-          .maximumViews = 4,
+          .maximumViews = gpu::kMaxViews,
           .shadings = parts::surfaceShadings(),
           .parameters = {ParameterDescriptor::boolean("depth_prepass", false,
                                                       "Draw depth alone first, so that no hidden fragment is shaded."),

@@ -17,6 +17,7 @@ out gl_PerVertex {
   float gl_ClipDistance[kMaxClippingPlanes];
 };
 #endif
+invariant gl_Position; // of the prepass and of what follows it
 layout(location = 0) out vec3 normal;
 #if VIEWS > 1
 layout(location = 1) out flat uint view;

@@ -50,7 +50,7 @@ void cut(OptimizedMesh& mesh) {
 
 } // namespace
 
-OptimizedMesh optimize(const SurfaceMesh& mesh) {
+OptimizedMesh optimize(const SurfaceMesh& mesh, bool withMeshlets) {
   OptimizedMesh result;
   if (mesh.triangles.empty()) return result;
   weld(mesh, result);
@@ -63,7 +63,7 @@ OptimizedMesh optimize(const SurfaceMesh& mesh) {
   const std::size_t used = meshopt_optimizeVertexFetch(result.vertices.data(), indices.data(), indices.size(),
                                                        result.vertices.data(), count, sizeof(Vertex));
   result.vertices.resize(used);
-  cut(result);
+  if (withMeshlets) cut(result);
   return result;
 }
 

@@ -17,6 +17,6 @@ struct OptimizedMesh {
 };
 
 /// Vertices of equal bits become one, triangles without area by that go.
-OptimizedMesh optimize(const SurfaceMesh& mesh);
+OptimizedMesh optimize(const SurfaceMesh& mesh, bool withMeshlets);
 
 } // namespace volmark::mesh_isosurface

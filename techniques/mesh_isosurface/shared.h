@@ -15,7 +15,7 @@ using uint = std::uint32_t;
 
 // Cells of a block along each axis: vertices are shared within a block.
 const int kBlockEdge = 8;
-const int kExtractThreads = 128; // a workgroup works on one block
+const int kExtractThreads = kBlockEdge * kBlockEdge; // of a workgroup, which works on one block: one a row of cells
 
 // Bindings. Choosing blocks: the sizes, the ranges, then those of parts/compact.glsl. Extraction:
 const int kBindingBlocks = kSurfaceOwn; // sizes

@@ -2,12 +2,15 @@
 
 #include "parts/marcher.h"
 #include "parts/min_max_grid.h"
+#include "parts/surface_raster.h"
 #include "shared.h"
 #include "volmark/gpu/target.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <optional>
 
 namespace volmark::octree_isosurface {
@@ -29,11 +32,14 @@ OctreeShape shapeOf(const ParameterValues& parameters, const Grid& grid) {
   return octreeShape(blocksOf(cellsOf(grid), leafOf(parameters)), skippedLevelsOf(parameters));
 }
 
-/// Positions of samples are good to 1e-4 voxel: what a voxel beyond the leaf may add to a sample at its side.
+/// What a voxel beyond the leaf may add to a sample at its side: positions are good to 1e-4 voxel, in large volumes to
+/// some units of the last place of a voxel coordinate.
 float marginOf(const Volume& volume) {
   const double range =
       volume.type() == ScalarType::float32 ? volume.dataRange().maximum - volume.dataRange().minimum : 1.0;
-  return static_cast<float>(1e-4 * range);
+  const glm::ivec3& dims = volume.grid().dims;
+  const double voxel = std::max(1e-4, std::ldexp(std::max({dims.x, dims.y, dims.z}), -21));
+  return static_cast<float>(voxel * range);
 }
 
 class IsoOctree final : public Technique {
@@ -113,8 +119,7 @@ TechniqueInfo describe() {
           .section = "4, \"min-max octree ray marching\"",
           .draws = Draws::isosurface,
           .maximumViews = gpu::kMaxViews,
-          .shadings = {ShadingModel::gooch, ShadingModel::none, ShadingModel::lambert, ShadingModel::phong,
-                       ShadingModel::ggx},
+          .shadings = surfaceShadings(),
           .parameters = {stepParameter(0.5),
                          ParameterDescriptor::integer("bisections", 3, 0, 16, "",
                                                       "Halvings of the interval that holds the crossing."),
@@ -140,6 +145,8 @@ TechniqueInfo describe() {
 std::optional<std::string> whyOctreeUnsupported(const Scene& scene, const ParameterValues& parameters,
                                                 const OutputSize& size, const gpu::Device* device) {
   if (auto why = whyUnsupported(scene, parameters, size, device)) return why;
+  if (parameters.text("stage") == "fragment" && !device->facts().fragmentStores)
+    return "The device can't write buffers in fragment shaders, which counts need; stage=compute can.";
   const Grid& grid = scene.volume->grid();
   const int rootLevel = rootLevelOf(blocksOf(cellsOf(grid), leafOf(parameters)));
   const std::optional<int> skipped = skippedLevelsOf(parameters);

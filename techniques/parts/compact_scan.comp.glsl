@@ -1,4 +1,4 @@
-// Sums of counts before each one, in place, and the arguments of indirect draws or dispatches over all that was counted.
+// Sums of counts before each one, in place, their total (kNoIndex if it is beyond 32 bits), and the arguments of indirect draws or dispatches over all that was counted.
 // One workgroup does it all; an invocation sums a part of each run of kScanGroup counts. What writes the items runs next.
 #version 460
 
@@ -39,7 +39,8 @@ void main() {
     }
     barrier();
     if (index < groups) counts[index] = before + sums[lane] - own;
-    before += sums[kScanGroup - 1];
+    uint sum = before + sums[kScanGroup - 1];
+    before = before == kNoIndex || sum < before ? kNoIndex : sum;
     barrier();
   }
   if (lane == 0u) counts[scan.totalIndex] = before;

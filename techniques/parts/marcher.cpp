@@ -16,10 +16,6 @@ namespace volmark::parts {
 
 namespace {
 
-gpu::Filtering filteringOf(const ParameterValues& parameters) {
-  return parameters.text("filtering") == "shader" ? gpu::Filtering::shader : gpu::Filtering::hardware;
-}
-
 gpu::PipelineLayoutDescription layoutOf(const std::vector<VkDescriptorType>& own) {
   std::vector<VkDescriptorType> bindings = {
       VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
@@ -31,6 +27,7 @@ gpu::PipelineLayoutDescription layoutOf(const std::vector<VkDescriptorType>& own
 /// One triangle over the whole picture of each view.
 void drawViews(gpu::Commands& commands, const gpu::Pipeline& pipeline, const Frame& frame,
                std::span<const gpu::Resource> resources, MarchConstants constants) {
+  commands.barrier(gpu::kDrawWrite, gpu::kDrawWrite);
   for (std::size_t i = 0; i < frame.inputs.views.size(); ++i) {
     const auto layer = static_cast<std::uint32_t>(frame.inputs.views[i].layer);
     constants.view = static_cast<std::uint32_t>(i);
@@ -138,6 +135,10 @@ std::uint32_t layersOf(const std::vector<View>& views) {
 
 ParameterDescriptor stepParameter(double value) {
   return ParameterDescriptor::number("step", value, 0.01, 4, "voxel", "Distance of samples along a ray.");
+}
+
+gpu::Filtering filteringOf(const ParameterValues& parameters) {
+  return parameters.text("filtering") == "shader" ? gpu::Filtering::shader : gpu::Filtering::hardware;
 }
 
 ParameterDescriptor filteringParameter() {

@@ -72,6 +72,7 @@ std::uint32_t layersOf(const std::vector<View>& views);
 /// The parameters that all ray marchers have: step, filtering, jitter.
 ParameterDescriptor stepParameter(double value);
 ParameterDescriptor filteringParameter();
+gpu::Filtering filteringOf(const ParameterValues& parameters);
 ParameterDescriptor jitterParameter();
 
 /// Descriptors of kCounterSamples to kCounterGradients, with the name and meaning of kCounterEnded.

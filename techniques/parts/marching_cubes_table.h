@@ -1,4 +1,4 @@
-// The triangles of a cell (Lorensen and Cline 1987), for C++ and GLSL (parts/marching_cubes.glsl).
+// The triangles of a cell (Lorensen and Cline 1987), for C++ and GLSL (parts/surface.glsl).
 //
 // Corner c of a cell lies at (c & 1, (c >> 1) & 1, c >> 2). Edge e runs along axis e >> 2; the lower and the higher bit
 // of e & 3 are its place along the two other axes, lower axis first. A case has bit c set if corner c is inside.

@@ -1,5 +1,6 @@
 #include "parts/min_max_grid.h"
 
+#include "parts/compaction.h"
 #include "parts/marcher.h"
 
 #include <fmt/format.h>
@@ -71,10 +72,9 @@ MinMaxGrid::MinMaxGrid(gpu::Device& device, const Volume& volume, const glm::ive
 }
 
 void MinMaxGrid::build(gpu::Commands& commands, const gpu::SampledImage& volume) {
-  constexpr gpu::Use anyShaderRead{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_READ_BIT};
   // Earlier frames may still be reading.
   commands.transition(m_nodes, m_built ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL,
-                      anyShaderRead, gpu::kComputeWrite);
+                      kAnyShaderRead, gpu::kComputeWrite);
   m_built = true;
   MinMaxConstants constants = m_constants;
   constants.nodes = m_shape.leaves;
@@ -89,7 +89,7 @@ void MinMaxGrid::build(gpu::Commands& commands, const gpu::SampledImage& volume)
         gpu::StorageImage{m_nodes.levelView(index)}};
     commands.dispatch(m_parents, nodes, gpu::bytesOf(constants), rangeGroups(constants.nodes, false));
   }
-  commands.barrier(gpu::kComputeWrite, anyShaderRead);
+  commands.barrier(gpu::kComputeWrite, kAnyShaderRead);
 }
 
 std::optional<std::string> MinMaxGrid::whyUnsupported(const gpu::Device& device, const Volume& volume,

@@ -13,10 +13,6 @@ namespace volmark::parts {
 
 namespace {
 
-gpu::Filtering filteringOf(const ParameterValues& parameters) {
-  return parameters.text("filtering") == "shader" ? gpu::Filtering::shader : gpu::Filtering::hardware;
-}
-
 gpu::Image makeDepth(gpu::Device& device, const OutputSize& size) {
   return {device,
           {.name = "depth",
@@ -71,14 +67,15 @@ SurfaceRaster::SurfaceRaster(const Preparation& preparation, int counters, Recor
                                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT}),
       m_depth(makeDepth(*preparation.device, preparation.size)), m_views(preparation.size.views) {
   registerPartsShaders();
-  for (int step = 0; step < preparation.scene.volume->timeSteps(); ++step)
-    m_boundaryMaximum.push_back(boundaryMaximum(preparation.scene, step));
   {
     const Pass pass = recorder.pass("upload_table");
     const auto table = packedMarchingCubesTable();
     recorder.gpu().upload(m_table, 0, std::as_bytes(std::span(table)));
     recorder.gpu().barrier(gpu::kTransferWrite, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_READ_BIT});
   }
+  const Pass pass = recorder.hostPass("pipelines");
+  for (int step = 0; step < preparation.scene.volume->timeSteps(); ++step)
+    m_boundaryMaximum.push_back(boundaryMaximum(preparation.scene, step));
   const std::vector<gpu::ShaderSource> shaders = {{"parts/surface_caps.vert.glsl", VK_SHADER_STAGE_VERTEX_BIT, {}},
                                                   {"parts/surface_caps.frag.glsl", VK_SHADER_STAGE_FRAGMENT_BIT, {}}};
   for (const bool counting : {false, true})

@@ -29,7 +29,8 @@ struct SurfacePipelines {
 
 class SurfaceRaster {
 public:
-  /// Generation pass "upload", all time steps. Reads the parameter filtering. `counters`: how many the technique has.
+  /// Generation passes "upload", all time steps, "upload_table" and "pipelines". Reads the parameter filtering.
+  /// `counters`: how many the technique has.
   SurfaceRaster(const Preparation& preparation, int counters, Recorder& recorder);
 
   /// The bindings of all surface shaders, then `own` from kSurfaceOwn on.

@@ -92,8 +92,9 @@ public:
   void barrier(const Use& before, const Use& after);
   void transition(const Image& image, VkImageLayout from, VkImageLayout to, const Use& before, const Use& after);
 
-  /// Submits what is recorded so far, waits for it and goes on recording; constants() stay valid. For generation passes
-  /// whose next step on the host needs a result; never on the timed path.
+  /// Submits what is recorded so far, waits for it and goes on recording; constants() stay valid. For passes whose
+  /// next step on the host needs a result: of generation, and of an update that makes something of unknown size. The
+  /// time counts; draws never wait.
   void submitAndWait();
 
   // For the harness: one submission per frame.
