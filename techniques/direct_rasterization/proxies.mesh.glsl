@@ -1,6 +1,6 @@
 // Proxies of occupied regions: for each view a quad in screen space over the projected corners, as near as the nearest one
 // (Kreskowski et al. 2022, section 3.5.2).
-// Macros: VIEWS, views of the picture; CLIP is ignored: what clipping planes cut off occludes nothing and hides nothing.
+// Macro: VIEWS, of the picture. Clipping planes need no heed: a proxy larger than what they leave is still conservative.
 // One invocation is one region; a workgroup has 32. proxies.frag.glsl runs next.
 #version 460
 

@@ -4,8 +4,8 @@
 
 namespace volmark::mesh_isosurface {
 
-ExtractedSurface::ExtractedSurface(const Preparation& preparation, int counters, Recorder& recorder)
-    : m_raster(preparation, counters, recorder) {
+ExtractedSurface::ExtractedSurface(const Preparation& preparation, Recorder& recorder)
+    : m_raster(preparation, 0, recorder) {
   {
     const Pass pass = recorder.hostPass("pipelines");
     m_extractor.emplace(*preparation.device, preparation.scene, m_raster);

@@ -13,7 +13,7 @@ namespace volmark::mesh_isosurface {
 class ExtractedSurface {
 public:
   /// Generation passes "upload", "upload_table", "pipelines" and "build_ranges".
-  ExtractedSurface(const Preparation& preparation, int counters, Recorder& recorder);
+  ExtractedSurface(const Preparation& preparation, Recorder& recorder);
 
   /// Passes "build_ranges" and "extract" where needed. True if the surface is a new one.
   bool update(const FrameInputs& inputs, Recorder& recorder);

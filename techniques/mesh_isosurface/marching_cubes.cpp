@@ -12,7 +12,7 @@ public:
   void prepare(const Preparation& preparation, Recorder& recorder) override {
     m_device = preparation.device;
     const std::vector<gpu::MemoryItem> before = m_device->ledger().items();
-    m_surface.emplace(preparation, 0, recorder);
+    m_surface.emplace(preparation, recorder);
     {
       const Pass pass = recorder.hostPass("pipelines");
       m_draw.emplace(m_surface->raster(), preparation.parameters.boolean("depth_prepass"));

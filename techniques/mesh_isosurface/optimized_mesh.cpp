@@ -67,7 +67,7 @@ private:
 void OptimizedMeshTechnique::prepare(const Preparation& preparation, Recorder& recorder) {
   m_device = preparation.device;
   const std::vector<gpu::MemoryItem> before = m_device->ledger().items();
-  m_surface.emplace(preparation, 0, recorder);
+  m_surface.emplace(preparation, recorder);
   {
     const Pass pass = recorder.hostPass("pipelines");
     if (asksForMeshShaders(preparation.parameters)) {

@@ -1,4 +1,5 @@
-// Sums of counts before each one, in place, their total (kNoIndex if it is beyond 32 bits), and the arguments of indirect draws or dispatches over all that was counted.
+// Sums of counts before each one, in place, their total (kNoIndex if it is beyond 32 bits), and the arguments of indirect
+// draws or dispatches over all that was counted.
 // One workgroup does it all; an invocation sums a part of each run of kScanGroup counts. What writes the items runs next.
 #version 460
 

@@ -61,14 +61,13 @@ public:
   /// Records all of it, if hasCaps(), inside of a rendering.
   void drawCaps(const Frame& frame, Recorder& recorder) const;
 
-  const gpu::VolumeTexture& volume() const { return m_volume; }
   gpu::SampledImage voxels(int timeStep) const { return m_volume.at(timeStep); }
   std::vector<std::uint64_t> counts() const { return m_counters.read(); }
-  /// Distance of the near plane, world units.
-  float near() const;
   static constexpr VkFormat kDepth = VK_FORMAT_D32_SFLOAT;
 
 private:
+  /// Distance of the near plane, world units.
+  float near() const;
   SurfaceConstants constantsOf(const FrameInputs& inputs) const;
   gpu::Pipeline makePipeline(const std::string& name, std::vector<gpu::ShaderSource> shaders,
                              std::span<const VkDescriptorType> own, std::uint32_t pushConstantBytes,
@@ -81,7 +80,7 @@ private:
   gpu::Buffer m_table;
   gpu::Image m_depth;
   int m_views;
-  mutable bool m_depthIsNew = true;
+  bool m_depthIsNew = true;
   gpu::Pipeline m_caps[2];               ///< timed, counting
   std::vector<double> m_boundaryMaximum; ///< of each time step, normalised
   gpu::BufferRange m_frameConstants;
