@@ -98,6 +98,8 @@ std::string whatIsMissing(VkPhysicalDevice device, const std::vector<VkExtension
   if (!enabled.vulkan12.bufferDeviceAddress) return "it lacks the feature bufferDeviceAddress";
   if (!enabled.vulkan13.synchronization2 || !enabled.vulkan13.dynamicRendering || !enabled.vulkan13.maintenance4)
     return "it lacks synchronization2, dynamicRendering or maintenance4";
+  if (!enabled.core.features.shaderClipDistance || !enabled.core.features.fullDrawIndexUint32)
+    return "it lacks shaderClipDistance or fullDrawIndexUint32";
   return {};
 }
 

@@ -58,7 +58,7 @@ void main() {
     ++vertex;
   }
   for (uint i = 0u; i < triangles; ++i) {
-    uvec3 at = triangleEdges(corners, i);
+    uvec3 at = triangleEdges(cellTriangles[corners], i);
     uvec3 indices = firstVertex + uvec3(vertexIndex(edges, at.x), vertexIndex(edges, at.y), vertexIndex(edges, at.z));
     for (uint view = 0u; view < VIEWS; ++view) {
       uint triangle = view * triangleTotal + firstTriangle + i;
@@ -72,16 +72,15 @@ void main() {
 
   for (uint i = lane; i < vertexCount; i += uint(kTaskThreads)) {
     uint edge = vertexEdges[i] & 15u;
-    vec3 world = vertexAt(cellOf(block, vertexEdges[i] >> 4) + lowerEnd(edge), edgeDirection(edge));
-    vec3 normal = vertexNormal(world);
+    SurfaceVertex vertex = vertexOnEdge(cellOf(block, vertexEdges[i] >> 4) + lowerEnd(edge), edgeDirection(edge));
     for (uint view = 0u; view < VIEWS; ++view) {
       uint target = view * vertexCount + i;
-      gl_MeshVerticesEXT[target].gl_Position = clipPosition(frame.views[view], world, surface.near);
+      gl_MeshVerticesEXT[target].gl_Position = clipPosition(frame.views[view], vertex.position, surface.near);
 #ifdef CLIP
       for (int plane = 0; plane < kMaxClippingPlanes; ++plane)
-        gl_MeshVerticesEXT[target].gl_ClipDistance[plane] = keptDistance(plane, world);
+        gl_MeshVerticesEXT[target].gl_ClipDistance[plane] = keptDistance(plane, vertex.position);
 #endif
-      normalOutput[target] = normal;
+      normalOutput[target] = vertex.normal;
 #if VIEWS > 1
       viewOutput[target] = view;
 #endif

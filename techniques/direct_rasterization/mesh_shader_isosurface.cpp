@@ -202,8 +202,7 @@ TechniqueInfo describe() {
                          ParameterDescriptor::oneOf("vertex_limit", 96, {32, 48, 64, 96, 128, 192, 256}, "vertex",
                                                     "Of a list of cells: what a mesh workgroup extracts for a view."),
                          ParameterDescriptor::choice("block", "8x8x4", {"8x8x4", "16x4x4", "8x4x4", "4x4x4"},
-                                                     "Cells of a block: what a task workgroup classifies."),
-                         parts::filteringParameter()},
+                                                     "Cells of a block: what a task workgroup classifies.")},
           .passes = {{"build_ranges", "Smallest and largest voxel of each block, when the time step has changed."},
                      {"choose_blocks", "Occupied blocks, without culling."},
                      {"draw_blocks", "All of them, without culling."},
@@ -226,7 +225,7 @@ std::optional<std::string> whyUnsupported(const Scene& scene, const ParameterVal
   if (!facts.meshShader) return fmt::format("The device {} has no mesh shaders.", facts.name);
   if (!facts.int8) return fmt::format("The device {} has no 8-bit integers, which payloads are made of.", facts.name);
   if (!facts.fragmentStores) return fmt::format("The device {} can't write buffers in fragment shaders.", facts.name);
-  if (auto why = parts::whySurfaceUnsupported(scene, parameters, size, device)) return why;
+  if (auto why = parts::whySurfaceUnsupported(scene, device)) return why;
   if (auto why = whySettingsUnsupported(parameters)) return why;
   const std::int64_t vertices = parameters.integer("vertex_limit");
   if (vertices * size.views > facts.maximumMeshVertices ||

@@ -50,9 +50,9 @@ std::vector<PassDescriptor> extractionGeneration() {
           {"pipelines", "Pipelines and buffers."}};
 }
 
-std::optional<std::string> whyExtractionUnsupported(const Scene& scene, const ParameterValues& parameters,
-                                                    const OutputSize& size, const gpu::Device* device) {
-  if (auto why = parts::whySurfaceUnsupported(scene, parameters, size, device)) return why;
+std::optional<std::string> whyExtractionUnsupported(const Scene& scene, const ParameterValues&, const OutputSize&,
+                                                    const gpu::Device* device) {
+  if (auto why = parts::whySurfaceUnsupported(scene, device)) return why;
   return Extractor::whyUnsupported(*device, *scene.volume);
 }
 

@@ -14,7 +14,9 @@ namespace {
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 constexpr VkBufferUsageFlags kSurface =
     kStorage | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
-constexpr std::uint32_t kFirstVertices = 1 << 16; ///< room before anything is known
+constexpr std::uint32_t kFirst = 1 << 16; ///< room before anything is known: vertices, triangles,
+constexpr std::uint32_t kFirstBlocks = kFirst / 64;
+constexpr std::uint64_t kRowBytes = kRowWords * sizeof(uint);
 
 glm::ivec3 blocksOf(const Grid& grid) {
   return parts::blocksOf(parts::cellsOf(grid), glm::ivec3(kBlockEdge));
@@ -51,10 +53,11 @@ gpu::Pipeline makePipeline(gpu::Device& device, const parts::SurfaceRaster& rast
   return {device, description};
 }
 
-/// Room for `count` elements and a quarter more, if there is not yet enough.
-void makeRoom(gpu::Device& device, gpu::Buffer& buffer, const char* name, std::uint64_t count, std::uint64_t bytes) {
+/// Room for `count` elements and a quarter more, `first` at least, if there is not yet enough.
+void makeRoom(gpu::Device& device, gpu::Buffer& buffer, const char* name, std::uint64_t count, std::uint32_t first,
+              std::uint64_t bytes) {
   if (buffer && buffer.bytes() >= count * bytes) return;
-  std::uint64_t wanted = std::max<std::uint64_t>(count + count / 4, kFirstVertices) * bytes;
+  std::uint64_t wanted = std::max<std::uint64_t>(count + count / 4, first) * bytes;
   const std::uint64_t most = device.facts().maximumAllocationBytes;
   if (count * bytes > most)
     throw UnsupportedError(
@@ -75,14 +78,15 @@ Extractor::Extractor(gpu::Device& device, const Scene& scene, const parts::Surfa
       m_triangleCounts(device, {"triangle_counts", (VkDeviceSize(m_blocks) + 1) * sizeof(uint), kStorage}),
       m_unused(device, {"scan_draws", sizeof(glm::uvec3), kStorage}),
       m_totals(device,
-               {"surface_totals", 2 * sizeof(uint), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryAccess::readback}),
+               {"surface_totals", 3 * sizeof(uint), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryAccess::readback}),
       m_count(makePipeline(device, raster, true)), m_write(makePipeline(device, raster, false)) {
   reserve();
 }
 
 void Extractor::reserve() {
-  makeRoom(*m_device, m_vertices, "vertices", m_vertexCount, sizeof(Vertex));
-  makeRoom(*m_device, m_indices, "indices", m_triangleCount, sizeof(glm::uvec3));
+  makeRoom(*m_device, m_rows, "block_rows", m_chosenBlocks, kFirstBlocks, kRowBytes);
+  makeRoom(*m_device, m_vertices, "vertices", m_vertexCount, kFirst, sizeof(Vertex));
+  makeRoom(*m_device, m_indices, "indices", m_triangleCount, kFirst, sizeof(glm::uvec3));
 }
 
 void Extractor::extract(gpu::Commands& commands, const parts::SurfaceRaster& raster) {
@@ -93,8 +97,31 @@ void Extractor::extract(gpu::Commands& commands, const parts::SurfaceRaster& ras
   const gpu::Resource own[] = {blocks, m_chosen.counts(), m_chosen.kept(), m_vertexCounts.range(),
                                m_triangleCounts.range()};
   const std::vector<gpu::Resource> resources = raster.resources(own);
-  ExtractConstants constants{.vertices = {}, .indices = {}, .totalIndex = m_chosen.totalIndex()};
+  count(commands, resources);
+  const bool hadRoom = std::uint64_t(m_chosenBlocks) * kRowBytes <= m_rows.bytes();
+  reserve();
+  if (!hadRoom) count(commands, resources);
+
+  // Earlier frames may still be drawing what is overwritten.
+  commands.barrier(gpu::kAnything, gpu::kComputeReadWrite);
+  const ExtractConstants constants = this->constants();
+  commands.dispatchIndirect(m_write, resources, gpu::bytesOf(constants), m_chosen.arguments(0));
+  commands.barrier(gpu::kComputeWrite,
+                   {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                    VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT});
+}
+
+ExtractConstants Extractor::constants() const {
+  return {.vertices = wordsOf(m_vertices.address()),
+          .indices = wordsOf(m_indices.address()),
+          .rows = wordsOf(m_rows.address()),
+          .rowBlocks = static_cast<uint>(m_rows.bytes() / kRowBytes),
+          .totalIndex = m_chosen.totalIndex()};
+}
+
+void Extractor::count(gpu::Commands& commands, std::span<const gpu::Resource> resources) {
   commands.barrier(parts::kAnyShaderRead, gpu::kComputeWrite);
+  const ExtractConstants constants = this->constants();
   commands.dispatchIndirect(m_count, resources, gpu::bytesOf(constants), m_chosen.arguments(0));
   commands.barrier(gpu::kComputeWrite, gpu::kComputeReadWrite);
   const parts::ScanConstants scan{.groups = 0,
@@ -106,34 +133,28 @@ void Extractor::extract(gpu::Commands& commands, const parts::SurfaceRaster& ras
   m_scan.record(commands, m_vertexCounts.range(), m_unused.range(), m_chosen.counts(), scan);
   m_scan.record(commands, m_triangleCounts.range(), m_unused.range(), m_chosen.counts(), scan);
   commands.barrier(gpu::kComputeWrite, gpu::kTransferRead);
-  const VkBufferCopy vertexTotal{VkDeviceSize(m_blocks) * sizeof(uint), 0, sizeof(uint)};
-  const VkBufferCopy triangleTotal{vertexTotal.srcOffset, sizeof(uint), sizeof(uint)};
-  vkCmdCopyBuffer(commands.handle(), m_vertexCounts.handle(), m_totals.handle(), 1, &vertexTotal);
-  vkCmdCopyBuffer(commands.handle(), m_triangleCounts.handle(), m_totals.handle(), 1, &triangleTotal);
+  const std::pair<VkBuffer, VkDeviceSize> sources[] = {{m_vertexCounts.handle(), m_blocks},
+                                                       {m_triangleCounts.handle(), m_blocks},
+                                                       {m_chosen.counts().buffer, m_chosen.totalIndex()}};
+  for (std::size_t i = 0; i < std::size(sources); ++i) {
+    const VkBufferCopy copy{sources[i].second * sizeof(uint), i * sizeof(uint), sizeof(uint)};
+    vkCmdCopyBuffer(commands.handle(), sources[i].first, m_totals.handle(), 1, &copy);
+  }
   commands.submitAndWait();
 
-  std::uint32_t totals[2];
+  std::uint32_t totals[3];
   std::memcpy(totals, m_totals.mapped().data(), sizeof(totals));
+  m_vertexCount = m_triangleCount = 0;
   // The scan says kNoIndex where a sum is beyond 32 bits; a draw has as many indices at most.
-  if (totals[0] == parts::kNoIndex || totals[1] >= parts::kNoIndex / 3) {
-    m_vertexCount = m_triangleCount = 0;
+  if (totals[0] == parts::kNoIndex || totals[1] >= parts::kNoIndex / 3)
     throw UnsupportedError("the surface has more vertices, or more corners of triangles, than 32 bits count");
-  }
   m_vertexCount = totals[0];
   m_triangleCount = totals[1];
-  reserve();
-  constants.vertices = wordsOf(m_vertices.address());
-  constants.indices = wordsOf(m_indices.address());
-  // Earlier frames may still be drawing what is overwritten.
-  commands.barrier(gpu::kAnything, gpu::kComputeReadWrite);
-  commands.dispatchIndirect(m_write, resources, gpu::bytesOf(constants), m_chosen.arguments(0));
-  commands.barrier(gpu::kComputeWrite,
-                   {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                    VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT});
+  m_chosenBlocks = totals[2];
 }
 
 std::vector<gpu::MemoryItem> Extractor::surfaceMemory() const {
-  return {m_vertices.memory(), m_indices.memory()};
+  return {m_rows.memory(), m_vertices.memory(), m_indices.memory()};
 }
 
 std::optional<std::string> Extractor::whyUnsupported(const gpu::Device& device, const Volume& volume) {

@@ -16,6 +16,9 @@ using uint = std::uint32_t;
 // Cells of a block along each axis: vertices are shared within a block.
 const int kBlockEdge = 8;
 const int kExtractThreads = kBlockEdge * kBlockEdge; // of a workgroup, which works on one block: one a row of cells
+// A block's inside voxels, as what counts leaves them for what writes: bits of rows.
+const int kRowsInWord = 3;
+const int kRowWords = (kBlockEdge + 1) * (kBlockEdge + 1) / kRowsInWord;
 
 // Bindings. Choosing blocks: the sizes, the ranges, then those of parts/compact.glsl. Extraction:
 const int kBindingBlocks = kSurfaceOwn; // sizes
@@ -43,6 +46,8 @@ struct Vertex {
 struct ExtractConstants {
   uvec2 vertices;
   uvec2 indices;
+  uvec2 rows;
+  uint rowBlocks;  // that there is room for in rows
   uint totalIndex; // where the counts of the choice hold the number of blocks
 };
 
@@ -65,7 +70,7 @@ struct Meshlet {
 #ifdef __cplusplus
 static_assert(sizeof(BlockConstants) == 24);
 static_assert(sizeof(Vertex) == 24);
-static_assert(sizeof(ExtractConstants) == 20);
+static_assert(sizeof(ExtractConstants) == 32);
 static_assert(sizeof(MeshConstants) == 12);
 static_assert(sizeof(Meshlet) == 16);
 } // namespace volmark::mesh_isosurface

@@ -1,6 +1,6 @@
 // Sums of counts before each one, in place, their total (kNoIndex if it is beyond 32 bits), and the arguments of indirect
 // draws or dispatches over all that was counted.
-// One workgroup does it all; an invocation sums a part of each run of kScanGroup counts. What writes the items runs next.
+// One workgroup does it all; an invocation sums counts that lie behind each other. What writes the items runs next.
 #version 460
 
 #extension GL_EXT_scalar_block_layout : require
@@ -24,30 +24,39 @@ layout(push_constant, scalar) uniform ScanPush {
 
 shared uint sums[kScanGroup];
 
+// kNoIndex, once reached, stays.
+uint add(uint a, uint b) {
+  uint sum = a + b;
+  return a == kNoIndex || b == kNoIndex || sum < a ? kNoIndex : sum;
+}
+
 void main() {
   uint lane = gl_LocalInvocationIndex;
   uint groups = scan.sizeIndex == kNoIndex ? scan.groups : sizes[scan.sizeIndex];
-  uint before = 0u;
-  for (uint first = 0u; first < groups; first += uint(kScanGroup)) {
-    uint index = first + lane;
-    uint own = index < groups ? counts[index] : 0u;
-    sums[lane] = own;
-    for (uint offset = 1u; offset < uint(kScanGroup); offset *= 2u) {
-      barrier();
-      uint other = lane >= offset ? sums[lane - offset] : 0u;
-      barrier();
-      sums[lane] += other;
-    }
+  uint part = (groups + uint(kScanGroup) - 1u) / uint(kScanGroup);
+  uint first = min(lane * part, groups);
+  uint end = min(first + part, groups);
+  uint own = 0u;
+  for (uint i = first; i < end; ++i) own = add(own, counts[i]);
+  sums[lane] = own;
+  for (uint offset = 1u; offset < uint(kScanGroup); offset *= 2u) {
     barrier();
-    if (index < groups) counts[index] = before + sums[lane] - own;
-    uint sum = before + sums[kScanGroup - 1];
-    before = before == kNoIndex || sum < before ? kNoIndex : sum;
+    uint other = lane >= offset ? sums[lane - offset] : 0u;
     barrier();
+    sums[lane] = add(sums[lane], other);
   }
-  if (lane == 0u) counts[scan.totalIndex] = before;
+  barrier();
+  uint before = lane == 0u ? 0u : sums[lane - 1u];
+  for (uint i = first; i < end; ++i) {
+    uint count = counts[i];
+    counts[i] = before;
+    before = add(before, count);
+  }
+  uint total = sums[kScanGroup - 1];
+  if (lane == 0u) counts[scan.totalIndex] = total;
   for (uint draw = lane; draw < scan.draws; draw += uint(kScanGroup)) {
     uint start = draw * scan.chunk;
-    uint items = before > start ? min(before - start, scan.chunk) : 0u;
+    uint items = total > start ? min(total - start, scan.chunk) : 0u;
     uint groups = (items + scan.perTask - 1u) / scan.perTask;
     uint rows = (groups + uint(kDispatchWidth) - 1u) / uint(kDispatchWidth);
     arguments[draw] = uvec3(min(groups, uint(kDispatchWidth)), rows, groups == 0u ? 0u : 1u);

@@ -10,7 +10,6 @@
 #include <volmark/view.glsl>
 #include <volmark/volume.glsl>
 
-layout(constant_id = kIdSurfaceShaderFiltering) const bool kShaderFiltering = false;
 layout(constant_id = kIdSurfaceCounting) const bool kCounting = false;
 
 VOLMARK_FRAME(kSurfaceFrame)
@@ -28,8 +27,12 @@ bool isOccupied(vec2 range) {
   return range.x < surface.threshold && range.y >= surface.threshold;
 }
 
+float texelAt(ivec3 voxel) {
+  return texelFetch(volume, voxel, 0).r;
+}
+
 uint isInside(ivec3 voxel) {
-  return texelFetch(volume, voxel, 0).r >= surface.threshold ? 1u : 0u;
+  return texelAt(voxel) >= surface.threshold ? 1u : 0u;
 }
 
 // Bit c: corner c, at (c & 1, (c >> 1) & 1, c >> 2), is inside.
@@ -59,9 +62,8 @@ uint triangleCount(uint corners) {
   return cellTriangles[corners].y >> 28;
 }
 
-// Edges of triangle i.
-uvec3 triangleEdges(uint corners, uint i) {
-  uvec2 bits = cellTriangles[corners];
+// Edges of triangle i of an entry of cellTriangles.
+uvec3 triangleEdges(uvec2 bits, uint i) {
   uvec3 shift = 12u * i + uvec3(0, 4, 8);
   return uvec3(((shift.x < 32u ? bits.x >> shift.x : bits.y >> (shift.x - 32u))) & 15u,
                ((shift.y < 32u ? bits.x >> shift.y : bits.y >> (shift.y - 32u))) & 15u,
@@ -83,19 +85,35 @@ ivec3 edgeDirection(uint edge) {
   return edge < 4u ? ivec3(1, 0, 0) : edge < 8u ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
 }
 
-// World position of the vertex on the edge from voxel `low` on.
-vec3 vertexAt(ivec3 low, ivec3 direction) {
-  float a = texelFetch(volume, low, 0).r;
-  float b = texelFetch(volume, low + direction, 0).r;
-  precise float t = clamp((surface.texel - a) / (b - a), 0.0, 1.0);
+struct SurfaceVertex {
+  vec3 position; // world
+  vec3 normal;   // unit, towards lower values, by central differences; 0 where there is no gradient
+};
+
+// The vertex on the edge from voxel `low` on. All that its samples interpolate lies on lines along the edge.
+SurfaceVertex vertexOnEdge(ivec3 low, ivec3 direction) {
+  ivec3 high = low + direction;
+  float a = texelAt(low);
+  float b = texelAt(high);
+  // Never at a voxel: where voxels are the isovalue, triangles of several cells would lie in one place, and have no area.
+  precise float t = clamp((surface.texel - a) / (b - a), kEdgeMargin, 1.0 - kEdgeMargin);
   precise vec3 voxel = vec3(low) + t * vec3(direction);
   precise vec3 world = frame.boxMinimum + voxel * frame.spacing;
-  return world;
-}
 
-// Unit normal by central differences, towards lower values; 0 where there is no gradient.
-vec3 vertexNormal(vec3 world) {
-  return normalOfGradient(sampleGradient(volume, volumeGrid(frame), world, kShaderFiltering));
+  ivec3 second = direction.zxy;
+  ivec3 third = direction.yzx;
+  ivec3 last = frame.dims - 1;
+  vec3 ahead = mix(vec3(b, texelAt(min(low + second, last)), texelAt(min(low + third, last))),
+                   vec3(texelAt(min(high + direction, last)), texelAt(min(high + second, last)),
+                        texelAt(min(high + third, last))), t);
+  vec3 behind = mix(vec3(texelAt(max(low - direction, 0)), texelAt(max(low - second, 0)), texelAt(max(low - third, 0))),
+                    vec3(a, texelAt(max(high - second, 0)), texelAt(max(high - third, 0))), t);
+  vec3 difference = clamp(frame.valueScale * ahead + frame.valueBias, 0.0, 1.0) -
+                    clamp(frame.valueScale * behind + frame.valueBias, 0.0, 1.0);
+  vec3 span = (min(voxel + 1.0, vec3(last)) - max(voxel - 1.0, 0.0)) * frame.spacing;
+  vec3 gradient =
+      (difference.x * vec3(direction) + difference.y * vec3(second) + difference.z * vec3(third)) / span;
+  return SurfaceVertex(world, normalOfGradient(gradient));
 }
 
 // Items are numbered x fastest.

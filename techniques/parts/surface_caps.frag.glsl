@@ -24,7 +24,7 @@ void main() {
   if (!clipRay(frame, ray, entry, exit, normal)) discard;
   vec3 world = clamp(pointOnRay(ray, entry), grid.boxMinimum, grid.boxMaximum);
   // A sample that is the isovalue is inside, as a voxel is, whatever rounding makes of its decoding.
-  if (sampleVolume(volume, grid, world, kShaderFiltering) < frame.isovalue - 2e-6) discard;
+  if (sampleVolume(volume, grid, world, true) < frame.isovalue - 2e-6) discard;
   vec3 toEye = -ray.direction;
   color = vec4(shade(kShadingModel, frame.surfaceColor, normal, towardsLight(frame, world, toEye), toEye,
                      frame.lightColor, frame.ambient), 1.0);

@@ -60,7 +60,7 @@ void addVariants(std::vector<gpu::ShaderSource>& shaders, int views, bool clip, 
 
 SurfaceRaster::SurfaceRaster(const Preparation& preparation, int counters, Recorder& recorder)
     : m_device(preparation.device), m_scene(&preparation.scene),
-      m_volume(*preparation.device, preparation.scene, filteringOf(preparation.parameters), recorder, 0,
+      m_volume(*preparation.device, preparation.scene, gpu::Filtering::shader, recorder, 0,
                preparation.scene.volume->timeSteps()),
       m_counters(*preparation.device, std::max(counters, 1)),
       m_table(*preparation.device, {"marching_cubes_table", 256 * sizeof(std::uint64_t),
@@ -91,8 +91,7 @@ std::vector<VkDescriptorType> SurfaceRaster::bindings(std::span<const VkDescript
 }
 
 gpu::Specialisation SurfaceRaster::variant(bool counting, gpu::Specialisation own) const {
-  return own.set(kIdSurfaceShaderFiltering, m_volume.filtering() == gpu::Filtering::shader)
-      .set(kIdSurfaceShadingModel, static_cast<std::uint32_t>(m_scene->shading.model))
+  return own.set(kIdSurfaceShadingModel, static_cast<std::uint32_t>(m_scene->shading.model))
       .set(kIdSurfaceCounting, counting);
 }
 
@@ -201,11 +200,10 @@ std::vector<ShadingModel> surfaceShadings() {
   return {ShadingModel::gooch, ShadingModel::none, ShadingModel::lambert, ShadingModel::phong, ShadingModel::ggx};
 }
 
-std::optional<std::string> whySurfaceUnsupported(const Scene& scene, const ParameterValues& parameters,
-                                                 const OutputSize& size, const gpu::Device* device) {
+std::optional<std::string> whySurfaceUnsupported(const Scene& scene, const gpu::Device* device) {
   if (!device->facts().vertexLayer) return "The device's vertex shaders can't choose a layer (shaderOutputLayer).";
   if (!device->facts().vertexStores) return "The device's vertex stages can't count (vertexPipelineStoresAndAtomics).";
-  return whyUnsupported(scene, parameters, size, device);
+  return gpu::VolumeTexture::whyUnsupported(*device, *scene.volume, gpu::Filtering::shader);
 }
 
 } // namespace volmark::parts

@@ -29,7 +29,7 @@ struct SurfacePipelines {
 
 class SurfaceRaster {
 public:
-  /// Generation passes "upload", all time steps, "upload_table" and "pipelines". Reads the parameter filtering.
+  /// Generation passes "upload", all time steps, "upload_table" and "pipelines".
   /// `counters`: how many the technique has.
   SurfaceRaster(const Preparation& preparation, int counters, Recorder& recorder);
 
@@ -91,7 +91,6 @@ private:
 std::vector<ShadingModel> surfaceShadings();
 
 /// Why no rasterising technique can draw this (one sentence), or nothing.
-std::optional<std::string> whySurfaceUnsupported(const Scene& scene, const ParameterValues& parameters,
-                                                 const OutputSize& size, const gpu::Device* device);
+std::optional<std::string> whySurfaceUnsupported(const Scene& scene, const gpu::Device* device);
 
 } // namespace volmark::parts

@@ -22,10 +22,9 @@ const int kSurfaceCounters = 4;
 const int kSurfaceOwn = 5; // and following: the technique's
 
 // Specialisation constants.
-const int kIdSurfaceShaderFiltering = 0;
-const int kIdSurfaceShadingModel = 1;
-const int kIdSurfaceCounting = 2;
-const int kIdSurfaceOwn = 3; // and following: the technique's
+const int kIdSurfaceShadingModel = 0;
+const int kIdSurfaceCounting = 1;
+const int kIdSurfaceOwn = 2; // and following: the technique's
 
 struct SurfaceConstants {
   float threshold; // a texel at or above it is inside; the one test of everything
@@ -33,6 +32,9 @@ struct SurfaceConstants {
   float near;      // distance of the near plane, world units
   uint layers;     // output layer of view i in byte i
 };
+
+// Of an edge, at both of its ends: no vertex lies there. Coordinates below 2048 tell it from the voxel.
+const float kEdgeMargin = 1.0f / 4096;
 
 // Choosing items out of a list, in order: count, scan, write.
 const int kCompactGroup = 256;    // items of a workgroup

@@ -29,13 +29,19 @@ Session makeSession(const Scene& scene, Values values, bool culling, int views) 
       meshShaderIsosurface(), scene, parts::withParameters(meshShaderIsosurface(), values), {kWidth, kHeight, views}};
 }
 
-/// Time steps in one volume.
-std::shared_ptr<const Volume> randomSteps(Numbers& numbers, glm::ivec3 dims, ScalarType type, int steps) {
+constexpr int kPlateau = 32;
+
+/// Time steps in one volume. Plateaus (uint8): multiples of kPlateau.
+std::shared_ptr<const Volume> randomSteps(Numbers& numbers, glm::ivec3 dims, ScalarType type, int steps,
+                                          bool plateaus) {
   std::vector<std::byte> all;
   for (int i = 0; i < steps; ++i) {
     const auto step = parts::randomVolume(numbers, dims, type, glm::dvec3(1));
     all.insert(all.end(), step->voxels().begin(), step->voxels().end());
   }
+  if (plateaus)
+    for (std::byte& voxel : all)
+      voxel &= ~std::byte{kPlateau - 1};
   return std::make_shared<Volume>("steps", Grid{dims, {1, 1.2, 0.8}}, type, std::move(all), steps);
 }
 
@@ -45,7 +51,8 @@ struct Case {
   ScalarType type;
   Values values;
   int views = 1;
-  bool hides = true; ///< regions are small enough to be hidden
+  bool hides = true;     ///< regions are small enough to be hidden
+  bool plateaus = false; ///< isovalues are voxels: cells beside each other meet in all of a face
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
@@ -60,7 +67,13 @@ std::vector<Case> cases() {
           {"stereo", {47, 33, 40}, ScalarType::uint16, {}, 2},
           {"blocks", {40, 41, 23}, ScalarType::float32, with("4x4x4", "block")},
           {"large_regions", {63, 64, 65}, ScalarType::int16, with("16x4x4", "32x32x32"), 1, false},
+          {"plateaus", {48, 45, 47}, ScalarType::uint8, with("8x8x4", "block"), 1, true, true},
           {"smallest", {2, 2, 2}, ScalarType::uint8, {}, 1, false}};
+}
+
+double isovalueOf(const Scene& scene, double voxel) {
+  const Range& range = scene.visualisationRange;
+  return (voxel - range.minimum) / (range.maximum - range.minimum);
 }
 
 class Culling : public testing::TestWithParam<Case> {};
@@ -70,7 +83,7 @@ TEST_P(Culling, ChangesNoPixelOnAnyFrame) {
   const Case& c = GetParam();
   Numbers numbers(29);
   constexpr int kSteps = 3;
-  const Scene scene = parts::makeScene(randomSteps(numbers, c.dims, c.type, kSteps), ShadingModel::gooch);
+  const Scene scene = parts::makeScene(randomSteps(numbers, c.dims, c.type, kSteps, c.plateaus), ShadingModel::gooch);
   const Grid& grid = scene.volume->grid();
   Session all = makeSession(scene, c.values, false, c.views);
   Session culled = makeSession(scene, c.values, true, c.views);
@@ -83,6 +96,7 @@ TEST_P(Culling, ChangesNoPixelOnAnyFrame) {
     inputs.views = {parts::lookAtBox(grid, azimuth, 20, kWidth, kHeight)};
     if (frame % 7 == 3) inputs.views = {parts::randomView(numbers, grid, kWidth, kHeight)};
     if (frame % 5 == 2) inputs.isovalue = numbers.between(0.02, 0.98);
+    if (c.plateaus) inputs.isovalue = isovalueOf(scene, kPlateau * numbers.integer(1, 7));
     if (frame % 11 == 6) inputs.timeStep = numbers.integer(0, kSteps - 1);
     if (frame % 13 == 8) inputs.clippingPlanes = parts::randomPlanes(numbers, grid);
     if (frame == 40) inputs.isovalue = 1.5;

@@ -121,24 +121,27 @@ TEST(Extraction, AnIsovalueAmongTheVoxelsIsInsideAndOneBeyondThemIsNowhere) {
 
 TEST(Extraction, MoreBlocksThanARowOfWorkgroups) {
   REQUIRE_MESH_SHADERS();
-  // One voxel inside each block: more occupied ones than kDispatchWidth.
-  const glm::ivec3 dims(8 * 65 + 1, 8 * 64 + 1, 4 * 16 + 1);
+  // One voxel inside a block of every three: more occupied ones than a dimension of workgroups has to hold.
+  const glm::ivec3 dims(1024, 1024, 64);
+  std::uint64_t blocks = 0;
   const auto count =
       static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z);
   std::vector<std::byte> voxels(count);
-  for (int z = 2; z < dims.z; z += 4)
-    for (int y = 4; y < dims.y; y += 8)
-      for (int x = 4; x < dims.x; x += 8)
+  for (int z = 2; z < dims.z - 1; z += 4)
+    for (int y = 4; y < dims.y - 1; y += 8)
+      for (int x = 4 + 8 * ((y / 8 + z / 4) % 3); x < dims.x - 1; x += 24) {
+        ++blocks;
         voxels[(static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y)) *
                    static_cast<std::size_t>(dims.x) +
                static_cast<std::size_t>(x)] = std::byte{255};
+      }
+  ASSERT_GT(blocks, 65535u);
   const Scene scene = parts::makeScene(
       std::make_shared<Volume>("dots", Grid{dims, glm::dvec3(1)}, ScalarType::uint8, std::move(voxels)),
       ShadingModel::none);
   const FrameInputs inputs = parts::makeInputs(parts::lookAtBox(scene.volume->grid(), 10, 20, kWidth, kHeight));
   const Drawn drawn =
       parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {{"culling", false}}, true);
-  const std::uint64_t blocks = 65 * 64 * 16;
   EXPECT_EQ(drawn.counters.at("blocks"), blocks);
   EXPECT_EQ(drawn.counters.at("cells"), 8 * blocks);
   EXPECT_EQ(drawn.counters.at("triangles"), 8 * blocks);

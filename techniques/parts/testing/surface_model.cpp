@@ -1,6 +1,7 @@
 #include "parts/testing/surface_model.h"
 
 #include "parts/marching_cubes_table.h"
+#include "parts/surface_shared.h"
 
 #include <algorithm>
 #include <array>
@@ -103,7 +104,7 @@ SurfaceMesh modelSurface(const Scene& scene, double isovalue, int timeStep) {
       ++high[edgeAxis(edge)];
       const double a = field.value(low), b = field.value(high);
       glm::dvec3 place(low);
-      place[edgeAxis(edge)] += std::clamp((field.level() - a) / (b - a), 0.0, 1.0);
+      place[edgeAxis(edge)] += std::clamp<double>((field.level() - a) / (b - a), kEdgeMargin, 1.0 - kEdgeMargin);
       mesh.positions.emplace_back(grid.toWorld(place));
     }
     return found->second;
