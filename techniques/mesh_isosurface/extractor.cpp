@@ -15,7 +15,7 @@ constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_
 constexpr VkBufferUsageFlags kSurface =
     kStorage | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
 constexpr std::uint32_t kFirst = 1 << 16; ///< room before anything is known: vertices, triangles,
-constexpr std::uint32_t kFirstBlocks = kFirst / 64;
+constexpr std::uint32_t kFirstBlocks = kFirst / 512;
 constexpr std::uint64_t kRowBytes = kRowWords * sizeof(uint);
 
 glm::ivec3 blocksOf(const Grid& grid) {

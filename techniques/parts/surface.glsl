@@ -85,6 +85,13 @@ ivec3 edgeDirection(uint edge) {
   return edge < 4u ? ivec3(1, 0, 0) : edge < 8u ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
 }
 
+// Where the surface crosses an edge between two voxels, from the first on. Never at a voxel: where voxels are the isovalue,
+// triangles of several cells would lie in one place, and have no area.
+float shareOfEdge(float a, float b) {
+  precise float t = clamp((surface.texel - a) / (b - a), kEdgeMargin, 1.0 - kEdgeMargin);
+  return t;
+}
+
 struct SurfaceVertex {
   vec3 position; // world
   vec3 normal;   // unit, towards lower values, by central differences; 0 where there is no gradient
@@ -95,8 +102,7 @@ SurfaceVertex vertexOnEdge(ivec3 low, ivec3 direction) {
   ivec3 high = low + direction;
   float a = texelAt(low);
   float b = texelAt(high);
-  // Never at a voxel: where voxels are the isovalue, triangles of several cells would lie in one place, and have no area.
-  precise float t = clamp((surface.texel - a) / (b - a), kEdgeMargin, 1.0 - kEdgeMargin);
+  float t = shareOfEdge(a, b);
   precise vec3 voxel = vec3(low) + t * vec3(direction);
   precise vec3 world = frame.boxMinimum + voxel * frame.spacing;
 

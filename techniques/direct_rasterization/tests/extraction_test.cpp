@@ -189,6 +189,124 @@ TEST(Extraction, ClippingPlanesAndEyesInsideShowWhatTheReferenceShows) {
   }
 }
 
+TEST(Extraction, PlateausAtTheIsovalueOnSidesOfTheBoxAreSolid) {
+  REQUIRE_MESH_SHADERS();
+  // Three sides are the isovalue, two voxels deep (where one is, rounding decides what rays see); a corner is above it,
+  // all else below.
+  const glm::ivec3 dims(24, 20, 22);
+  std::vector<std::byte> voxels;
+  for (int z = 0; z < dims.z; ++z)
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x) {
+        const bool isLevel = x < 2 || z > dims.z - 3 || y < 2;
+        voxels.push_back(x + y + z < 6 ? std::byte{255} : isLevel ? std::byte{128} : std::byte{0});
+      }
+  const Scene scene = parts::makeScene(
+      std::make_shared<Volume>("plateaus", Grid{dims, glm::dvec3(1)}, ScalarType::uint8, std::move(voxels)),
+      ShadingModel::gooch);
+  for (const double azimuth : {-130.0, -40.0, 50.0, 140.0}) {
+    const FrameInputs inputs =
+        parts::makeInputs(parts::lookAtBox(scene.volume->grid(), azimuth, 21, kWidth, kHeight), 128 / 255.0);
+    const Drawn drawn = parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {});
+    parts::expectNearReference(drawn.pictures[0], scene, inputs);
+  }
+}
+
+/// What clipping planes leave of a ray's way through the box.
+std::optional<parts::Span> keptSpan(const Grid& grid, const Ray& ray, const std::vector<ClippingPlane>& planes) {
+  auto span = parts::boxSpan(grid, ray);
+  if (!span) return span;
+  for (const ClippingPlane& plane : planes) {
+    const double height = glm::dot(plane.normal, ray.origin) - plane.offset;
+    const double slope = glm::dot(plane.normal, ray.direction);
+    if (slope > 0) span->entry = std::max(span->entry, -height / slope);
+    if (slope < 0) span->exit = std::min(span->exit, -height / slope);
+  }
+  if (span->entry > span->exit) span.reset();
+  return span;
+}
+
+/// The nearest of the triangles along a ray; infinite if there is none.
+double nearestTriangle(const SurfaceMesh& mesh, const Ray& ray) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const glm::uvec3& triangle : mesh.triangles) {
+    const glm::dvec3 a = glm::dvec3(mesh.positions[triangle.x]) - ray.origin;
+    const glm::dvec3 b = glm::dvec3(mesh.positions[triangle.y]) - ray.origin;
+    const glm::dvec3 c = glm::dvec3(mesh.positions[triangle.z]) - ray.origin;
+    const double u = glm::dot(ray.direction, glm::cross(b, c)), v = glm::dot(ray.direction, glm::cross(c, a)),
+                 w = glm::dot(ray.direction, glm::cross(a, b));
+    if ((u < 0) != (v < 0) || (v < 0) != (w < 0)) continue;
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    const double distance = glm::dot(normal, a) / glm::dot(normal, ray.direction);
+    if (distance > 0) nearest = std::min(nearest, distance);
+  }
+  return nearest;
+}
+
+/// How many triangles lie between two points.
+int trianglesBetween(const SurfaceMesh& mesh, glm::dvec3 from, const glm::dvec3& to) {
+  int count = 0;
+  while (glm::length(to - from) > 0) {
+    const double distance = nearestTriangle(mesh, {from, glm::normalize(to - from)});
+    if (distance >= glm::length(to - from)) break;
+    from += (distance + 1e-9) * glm::normalize(to - from);
+    ++count;
+  }
+  return count;
+}
+
+TEST(Extraction, SolidsAreClosedWhereRaysEnterThem) {
+  REQUIRE_MESH_SHADERS();
+  // A cell is many pixels wide, so that a gap between triangles and what closes them would be seen.
+  Numbers numbers(53);
+  int solid = 0, wrong = 0, hits = 0;
+  for (int i = 0; i < 8; ++i) {
+    const glm::ivec3 dims(numbers.integer(2, 5), numbers.integer(2, 5), numbers.integer(2, 5));
+    const Scene scene = parts::makeScene(
+        parts::makeVolume([&](const glm::dvec3&) { return numbers.unit(); }, dims, ScalarType::uint8, {1, 1.2, 0.9}),
+        ShadingModel::none);
+    const Grid& grid = scene.volume->grid();
+    FrameInputs inputs =
+        parts::makeInputs(parts::randomView(numbers, grid, kWidth, kHeight), numbers.between(0.2, 0.8));
+    if (i % 2 == 1) inputs.clippingPlanes = parts::randomPlanes(numbers, grid);
+    const SurfaceMesh mesh = parts::modelSurface(scene, inputs.isovalue);
+    const Drawn drawn = parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {});
+    const double level = scene.visualisationRange.minimum +
+                         inputs.isovalue * (scene.visualisationRange.maximum - scene.visualisationRange.minimum);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const Ray ray = rayThroughPixel(inputs.views[0], x, y, kWidth, kHeight);
+        const auto interval = keptSpan(grid, ray, inputs.clippingPlanes);
+        double expected = std::numeric_limits<double>::infinity();
+        if (interval) {
+          const glm::dvec3 entry = ray.origin + interval->entry * ray.direction;
+          // The corner of the cell that is far along all axes: the way there lies in no side of it.
+          const glm::dvec3 place =
+              glm::clamp((entry - grid.boxMinimum()) / grid.spacingMm, glm::dvec3(0), glm::dvec3(dims - 1));
+          const glm::ivec3 cell = glm::min(glm::ivec3(place), dims - 2);
+          const glm::ivec3 voxel = cell + glm::ivec3(glm::lessThan(place - glm::dvec3(cell), glm::dvec3(0.5)));
+          const bool isInside = scene.volume->value(voxel.x, voxel.y, voxel.z) >= level;
+          if (isInside != (trianglesBetween(mesh, entry, grid.toWorld(glm::dvec3(voxel))) % 2 == 1)) {
+            expected = interval->entry;
+            ++solid;
+          } else {
+            const double nearest = interval->entry + nearestTriangle(mesh, {entry, ray.direction});
+            if (nearest <= interval->exit) expected = nearest;
+          }
+        }
+        const float found = drawn.pictures[0].distance[drawn.pictures[0].index(x, y)];
+        hits += std::isfinite(expected);
+        const bool isAlike =
+            std::isfinite(expected) ? std::abs(found - expected * ray.cosine) < 0.02 : std::isinf(found);
+        wrong += !isAlike;
+      }
+  }
+  EXPECT_GT(solid, 2000);
+  EXPECT_GT(hits, solid + 2000);
+  // Pixels on sides of triangles.
+  EXPECT_LE(wrong, hits / 500);
+}
+
 TEST(Extraction, FlatVolumesHaveNoCells) {
   REQUIRE_MESH_SHADERS();
   const Scene scene =
