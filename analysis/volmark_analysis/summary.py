@@ -90,7 +90,8 @@ def _extremes(panel: Panel, named: bool) -> str:
 
 
 def _time_and_error(r: PointResult) -> str:
-    return f"{number_text(r.statistics['mean_ms'])} ms ({number_text(r.statistics['fps'])} fps) at {error_text(r)}"
+    text = f"{number_text(r.statistics['mean_ms'])} ms ({number_text(r.statistics['fps'])} fps)"
+    return f"{text} at {error_text(r)}" if r.errors else text
 
 
 def failures(results: list[PointResult]) -> list[str]:

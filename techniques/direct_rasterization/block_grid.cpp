@@ -44,8 +44,4 @@ BlockConstants blockConstants(const BlockSettings& settings, const Grid& grid, c
   return constants;
 }
 
-std::uint32_t countOf(const glm::ivec3& size) {
-  return static_cast<std::uint32_t>(size.x) * static_cast<std::uint32_t>(size.y) * static_cast<std::uint32_t>(size.z);
-}
-
 } // namespace volmark::direct_rasterization

@@ -24,6 +24,4 @@ std::optional<std::string> whySettingsUnsupported(const ParameterValues& paramet
 
 BlockConstants blockConstants(const BlockSettings& settings, const Grid& grid, const gpu::Device& device);
 
-std::uint32_t countOf(const glm::ivec3& size);
-
 } // namespace volmark::direct_rasterization

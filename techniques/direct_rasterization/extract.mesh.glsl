@@ -9,19 +9,7 @@
 layout(local_size_x = kTaskThreads) in;
 layout(triangles, max_vertices = VERTEX_LIMIT * VIEWS, max_primitives = TRIANGLE_LIMIT * VIEWS) out;
 
-out gl_MeshPerVertexEXT {
-  vec4 gl_Position;
-#ifdef CLIP
-  float gl_ClipDistance[kMaxClippingPlanes];
-#endif
-} gl_MeshVerticesEXT[];
-layout(location = 0) out vec3 normalOutput[];
-#if VIEWS > 1
-perprimitiveEXT out gl_MeshPerPrimitiveEXT {
-  perprimitiveEXT int gl_Layer;
-} gl_MeshPrimitivesEXT[];
-layout(location = 1) out flat uint viewOutput[];
-#endif
+#include <parts/surface_mesh_output.glsl>
 
 shared uint vertexEdges[VERTEX_LIMIT]; // cell (8 bits), edge
 shared uint cellSizes[kTaskThreads];   // vertices, triangles << 16
@@ -60,31 +48,14 @@ void main() {
   for (uint i = 0u; i < triangles; ++i) {
     uvec3 at = triangleEdges(cellTriangles[corners], i);
     uvec3 indices = firstVertex + uvec3(vertexIndex(edges, at.x), vertexIndex(edges, at.y), vertexIndex(edges, at.z));
-    for (uint view = 0u; view < VIEWS; ++view) {
-      uint triangle = view * triangleTotal + firstTriangle + i;
-      gl_PrimitiveTriangleIndicesEXT[triangle] = view * vertexCount + indices;
-#if VIEWS > 1
-      gl_MeshPrimitivesEXT[triangle].gl_Layer = layerOf(view);
-#endif
-    }
+    writeTriangle(firstTriangle + i, triangleTotal, indices, vertexCount);
   }
   barrier();
 
   for (uint i = lane; i < vertexCount; i += uint(kTaskThreads)) {
     uint edge = vertexEdges[i] & 15u;
     SurfaceVertex vertex = vertexOnEdge(cellOf(block, vertexEdges[i] >> 4) + lowerEnd(edge), edgeDirection(edge));
-    for (uint view = 0u; view < VIEWS; ++view) {
-      uint target = view * vertexCount + i;
-      gl_MeshVerticesEXT[target].gl_Position = clipPosition(frame.views[view], vertex.position, surface.near);
-#ifdef CLIP
-      for (int plane = 0; plane < kMaxClippingPlanes; ++plane)
-        gl_MeshVerticesEXT[target].gl_ClipDistance[plane] = keptDistance(plane, vertex.position);
-#endif
-      normalOutput[target] = vertex.normal;
-#if VIEWS > 1
-      viewOutput[target] = view;
-#endif
-    }
+    writeVertex(i, vertexCount, vertex.position, vertex.normal);
   }
   if (kCounting && lane == 0u) {
     addToCounter(uint(kCountVertices), vertexCount);

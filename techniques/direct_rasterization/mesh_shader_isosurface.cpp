@@ -65,11 +65,11 @@ void MeshShaderIsosurface::prepare(const Preparation& preparation, Recorder& rec
     const BlockSettings settings = blockSettings(parameters);
     m_constants = blockConstants(settings, volume.grid(), device);
     m_ranges.emplace(device, volume, settings.cells, "block_ranges");
-    const std::uint32_t blocks = countOf(m_constants.blocks);
+    const std::uint32_t blocks = parts::countOf(m_constants.blocks);
     if (parameters.boolean("culling")) {
       m_previous.emplace(makeBlockList(device, *m_raster, "previous_blocks", Choice::previous, blocks));
       m_new.emplace(makeBlockList(device, *m_raster, "new_blocks", Choice::newlyVisible, blocks));
-      m_regions.emplace(device, *m_raster, countOf(m_constants.regions), preparation.size.views);
+      m_regions.emplace(device, *m_raster, parts::countOf(m_constants.regions), preparation.size.views);
     } else {
       m_occupied.emplace(makeBlockList(device, *m_raster, "blocks", Choice::occupied, blocks));
       m_noFlags = gpu::Buffer(device, {"no_flags", sizeof(uint), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
@@ -240,10 +240,10 @@ std::optional<std::string> whyUnsupported(const Scene& scene, const ParameterVal
                        4 * kTaskThreads * size.views, facts.maximumMeshVertices);
   const Grid& grid = scene.volume->grid();
   const glm::ivec3 blocks = parts::blocksOf(parts::cellsOf(grid), blockSettings(parameters).cells);
-  const std::uint64_t bytes = std::uint64_t(countOf(blocks)) * sizeof(uint);
+  const std::uint64_t bytes = std::uint64_t(parts::countOf(blocks)) * sizeof(uint);
   if (bytes > facts.maximumStorageBufferRange)
-    return fmt::format("A list of {} blocks needs {} bytes, the device's storage buffers hold {}.", countOf(blocks),
-                       bytes, facts.maximumStorageBufferRange);
+    return fmt::format("A list of {} blocks needs {} bytes, the device's storage buffers hold {}.",
+                       parts::countOf(blocks), bytes, facts.maximumStorageBufferRange);
   return parts::MinMaxGrid::whyUnsupported(*device, *scene.volume,
                                            parts::octreeShape(blocks, parts::rootLevelOf(blocks)));
 }

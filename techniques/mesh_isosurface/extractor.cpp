@@ -22,10 +22,6 @@ glm::ivec3 blocksOf(const Grid& grid) {
   return parts::blocksOf(parts::cellsOf(grid), glm::ivec3(kBlockEdge));
 }
 
-std::uint32_t countOf(const glm::ivec3& size) {
-  return static_cast<std::uint32_t>(size.x) * static_cast<std::uint32_t>(size.y) * static_cast<std::uint32_t>(size.z);
-}
-
 parts::CompactionDescription describeChoice(const parts::SurfaceRaster& raster, std::uint32_t blocks) {
   const VkDescriptorType own[] = {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
   parts::CompactionDescription description;
@@ -72,7 +68,8 @@ void makeRoom(gpu::Device& device, gpu::Buffer& buffer, const char* name, std::u
 
 Extractor::Extractor(gpu::Device& device, const Scene& scene, const parts::SurfaceRaster& raster)
     : m_device(&device), m_constants{.cells = scene.volume->grid().dims - 1, .blocks = blocksOf(scene.volume->grid())},
-      m_blocks(countOf(m_constants.blocks)), m_ranges(device, *scene.volume, glm::ivec3(kBlockEdge), "block_ranges"),
+      m_blocks(parts::countOf(m_constants.blocks)),
+      m_ranges(device, *scene.volume, glm::ivec3(kBlockEdge), "block_ranges"),
       m_chosen(device, describeChoice(raster, m_blocks)), m_scan(device),
       m_vertexCounts(device, {"vertex_counts", (VkDeviceSize(m_blocks) + 1) * sizeof(uint), kStorage}),
       m_triangleCounts(device, {"triangle_counts", (VkDeviceSize(m_blocks) + 1) * sizeof(uint), kStorage}),
@@ -159,10 +156,10 @@ std::vector<gpu::MemoryItem> Extractor::surfaceMemory() const {
 
 std::optional<std::string> Extractor::whyUnsupported(const gpu::Device& device, const Volume& volume) {
   const glm::ivec3 blocks = blocksOf(volume.grid());
-  const std::uint64_t bytes = (std::uint64_t(countOf(blocks)) + 1) * sizeof(uint);
+  const std::uint64_t bytes = (std::uint64_t(parts::countOf(blocks)) + 1) * sizeof(uint);
   if (bytes > device.facts().maximumStorageBufferRange)
-    return fmt::format("Counts of {} blocks need {} bytes, the device's storage buffers hold {}.", countOf(blocks),
-                       bytes, device.facts().maximumStorageBufferRange);
+    return fmt::format("Counts of {} blocks need {} bytes, the device's storage buffers hold {}.",
+                       parts::countOf(blocks), bytes, device.facts().maximumStorageBufferRange);
   return parts::MinMaxGrid::whyUnsupported(device, volume, parts::octreeShape(blocks, parts::rootLevelOf(blocks)));
 }
 

@@ -30,6 +30,10 @@ glm::ivec3 blocksOf(const glm::ivec3& cells, const glm::ivec3& edges) {
   return (cells + edges - 1) / edges;
 }
 
+std::uint32_t countOf(const glm::ivec3& size) {
+  return static_cast<std::uint32_t>(size.x) * static_cast<std::uint32_t>(size.y) * static_cast<std::uint32_t>(size.z);
+}
+
 int rootLevelOf(const glm::ivec3& blocks) {
   const int most = std::max({blocks.x, blocks.y, blocks.z});
   return static_cast<int>(std::bit_width(static_cast<unsigned>(most - 1)));

@@ -28,6 +28,9 @@ glm::ivec3 cellsOf(const Grid& grid);
 /// Blocks of `edges` along each axis: rounded up.
 glm::ivec3 blocksOf(const glm::ivec3& cells, const glm::ivec3& edges);
 
+/// How many blocks that is, for sizes whose count is below 2^32.
+std::uint32_t countOf(const glm::ivec3& size);
+
 int rootLevelOf(const glm::ivec3& blocks);
 
 /// `skippedLevels` below the root are never asked, at most rootLevelOf(blocks); absent: 3, or all but the leaves where

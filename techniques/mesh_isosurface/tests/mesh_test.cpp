@@ -217,12 +217,7 @@ TEST_P(Meshes, GrowWithTheSurfaceAndFollowTimeSteps) {
     const Drawn drawn = session.draw(inputs, true);
     const parts::SurfaceCounts expected = parts::countSurface(scene, isovalue, {8, 8, 8}, 1 << 20, step);
     EXPECT_EQ(session.technique().surface()->triangles.size(), drawn.counters.at("triangles"));
-    if (GetParam().factory == marchingCubes) {
-      EXPECT_EQ(drawn.counters.at("triangles"), expected.triangles) << isovalue;
-    } else {
-      EXPECT_LE(drawn.counters.at("triangles"), expected.triangles) << isovalue;
-      EXPECT_GE(drawn.counters.at("triangles"), expected.triangles * 9 / 10) << isovalue;
-    }
+    EXPECT_EQ(drawn.counters.at("triangles"), expected.triangles) << isovalue;
     std::uint64_t bytes = 0;
     for (const gpu::MemoryItem& item : session.technique().memory())
       bytes += item.bytes;
