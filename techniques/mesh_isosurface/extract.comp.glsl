@@ -133,7 +133,7 @@ void main() {
   ivec3 low = placeOf(list[item], grid.blocks) * kBlockEdge;
   ivec3 size = min(grid.cells - low, ivec3(kBlockEdge)); // of this block
   Rows found = Rows(extract.rows);
-  // Voxels are read once: what writes the surface finds here what counted it has seen.
+  // Whether voxels are inside is found once: what writes the surface finds here what counted it has seen.
 #ifdef COUNT
   findInside(lane, low, size);
   barrier();

@@ -40,7 +40,7 @@ std::vector<gpu::MemoryItem> memoryNow(std::vector<gpu::MemoryItem> prepared, co
 
 std::vector<PassDescriptor> extractionPasses() {
   return {{"build_ranges", "Smallest and largest voxel of each block, when the time step has changed."},
-          {"extract", "The surface, when isovalue or time step have changed. Waits once, for its size."}};
+          {"extract", "The surface, when isovalue or time step have changed. Waits for its size."}};
 }
 
 std::vector<PassDescriptor> extractionGeneration() {

@@ -15,7 +15,8 @@ layout(set = 0, binding = kBindingRanges) uniform sampler3D ranges;
 const int kCounterKept = -1;
 
 bool keeps(uint item) {
-  return isOccupied(texelFetch(ranges, placeOf(item, grid.blocks), 0).xy);
+  // A volume of one voxel along an axis has no cells.
+  return all(greaterThan(grid.cells, ivec3(0))) && isOccupied(texelFetch(ranges, placeOf(item, grid.blocks), 0).xy);
 }
 
 #include <parts/compact.glsl>

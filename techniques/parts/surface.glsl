@@ -1,5 +1,5 @@
-// The isosurface in a cell: its case, its vertices, their normals (Lorensen and Cline 1987). The same bits in every shader,
-// so that neighbours in other blocks and other techniques get the same vertex of an edge.
+// The isosurface in a cell: its case, its vertices, their normals (Lorensen and Cline 1987). Positions and gradients have
+// the same bits in every shader, so that neighbours in other blocks and other techniques get the same vertex of an edge.
 #ifndef PARTS_SURFACE_GLSL
 #define PARTS_SURFACE_GLSL
 
@@ -109,15 +109,15 @@ SurfaceVertex vertexOnEdge(ivec3 low, ivec3 direction) {
   ivec3 second = direction.zxy;
   ivec3 third = direction.yzx;
   ivec3 last = frame.dims - 1;
-  vec3 ahead = mix(vec3(b, texelAt(min(low + second, last)), texelAt(min(low + third, last))),
+  precise vec3 ahead = mix(vec3(b, texelAt(min(low + second, last)), texelAt(min(low + third, last))),
                    vec3(texelAt(min(high + direction, last)), texelAt(min(high + second, last)),
                         texelAt(min(high + third, last))), t);
-  vec3 behind = mix(vec3(texelAt(max(low - direction, 0)), texelAt(max(low - second, 0)), texelAt(max(low - third, 0))),
+  precise vec3 behind = mix(vec3(texelAt(max(low - direction, 0)), texelAt(max(low - second, 0)), texelAt(max(low - third, 0))),
                     vec3(a, texelAt(max(high - second, 0)), texelAt(max(high - third, 0))), t);
-  vec3 difference = clamp(frame.valueScale * ahead + frame.valueBias, 0.0, 1.0) -
+  precise vec3 difference = clamp(frame.valueScale * ahead + frame.valueBias, 0.0, 1.0) -
                     clamp(frame.valueScale * behind + frame.valueBias, 0.0, 1.0);
-  vec3 span = (min(voxel + 1.0, vec3(last)) - max(voxel - 1.0, 0.0)) * frame.spacing;
-  vec3 gradient =
+  precise vec3 span = (min(voxel + 1.0, vec3(last)) - max(voxel - 1.0, 0.0)) * frame.spacing;
+  precise vec3 gradient =
       (difference.x * vec3(direction) + difference.y * vec3(second) + difference.z * vec3(third)) / span;
   return SurfaceVertex(world, normalOfGradient(gradient));
 }

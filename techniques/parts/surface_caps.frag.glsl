@@ -17,17 +17,27 @@ layout(location = 1) out float distance;
 layout(location = 2) out vec4 normalOutput;
 #endif
 
-// Whether the triangle is met between `from` and `from + way`.
-bool isCrossed(vec3 from, vec3 way, vec3 a, vec3 b, vec3 c) {
-  a -= from;
-  b -= from;
-  c -= from;
-  // The same products for a side that two triangles share.
-  bvec3 isLeft = greaterThanEqual(vec3(dot(way, cross(b, c)), dot(way, cross(c, a)), dot(way, cross(a, b))), vec3(0));
-  if (any(isLeft) && !all(isLeft)) return false;
-  vec3 across = cross(b - a, c - a);
-  float at = dot(across, a) / dot(across, way);
-  return at > 0.0 && at < 1.0;
+// On which side of the line from a to b a way from the origin goes by. The same product for both triangles that share the
+// line, and the other answer: a way through it, as common ones go (at x = z, say), crosses just one of them.
+bool isLeft(vec3 way, vec3 a, vec3 b, uint edgeOfA, uint edgeOfB) {
+  bool isTurned = edgeOfA > edgeOfB;
+  vec3 first = isTurned ? b : a;
+  vec3 second = isTurned ? a : b;
+  precise float product = way.x * (first.y * second.z - first.z * second.y) +
+                          way.y * (first.z * second.x - first.x * second.z) +
+                          way.z * (first.x * second.y - first.y * second.x);
+  return (product >= 0.0) != isTurned;
+}
+
+// Whether the triangle on these edges is met between the origin and `way`.
+bool isCrossed(vec3 way, vec3 at[3], uvec3 edges) {
+  bool isLeftOfFirst = isLeft(way, at[0], at[1], edges.x, edges.y);
+  if (isLeft(way, at[1], at[2], edges.y, edges.z) != isLeftOfFirst ||
+      isLeft(way, at[2], at[0], edges.z, edges.x) != isLeftOfFirst)
+    return false;
+  vec3 across = cross(at[1] - at[0], at[2] - at[0]);
+  float share = dot(across, at[0]) / dot(across, way);
+  return share > 0.0 && share < 1.0;
 }
 
 bool isSolid(vec3 voxel) {
@@ -52,9 +62,10 @@ bool isSolid(vec3 voxel) {
       ivec3 direction = edgeDirection(edges[k]);
       int a = low.x | low.y << 1 | low.z << 2;
       int b = a + (direction.x | direction.y << 1 | direction.z << 2);
-      at[k] = vec3(low) + shareOfEdge(texels[a], texels[b]) * vec3(direction);
+      precise vec3 corner = vec3(low) + shareOfEdge(texels[a], texels[b]) * vec3(direction) - place;
+      at[k] = corner;
     }
-    if (isCrossed(place, vec3(far) - place, at[0], at[1], at[2])) isInside = !isInside;
+    if (isCrossed(vec3(far) - place, at, edges)) isInside = !isInside;
   }
   return isInside;
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace volmark::direct_rasterization {
@@ -305,6 +306,28 @@ TEST(Extraction, SolidsAreClosedWhereRaysEnterThem) {
   EXPECT_GT(hits, solid + 2000);
   // Pixels on sides of triangles.
   EXPECT_LE(wrong, hits / 500);
+}
+
+TEST(Extraction, EyesInTheSolidSeeNothingElseEvenOnDiagonals) {
+  REQUIRE_MESH_SHADERS();
+  // From the middle of a cell the way to its far corner goes along the diagonal that two triangles share.
+  for (int axis = 0; axis < 3; ++axis) {
+    const Scene scene =
+        parts::makeScene(parts::makeVolume([&](const glm::dvec3& p) { return p[axis] < 0.5 ? 1.0 : 0.0; },
+                                           glm::ivec3(4), ScalarType::uint8),
+                         ShadingModel::none);
+    for (const bool isInside : {true, false}) {
+      glm::dvec3 eye(0);
+      eye[axis] = isInside ? -0.3 : 0.3;
+      glm::dvec3 target(1, 1.3, 1.7);
+      FrameInputs inputs = parts::makeInputs(
+          {.pose = Pose::lookAt(eye, eye + target), .frustum = Frustum::symmetric(60, kWidth, kHeight)}, 0.5);
+      const Drawn drawn = parts::drawOnce(meshShaderIsosurface(), scene, inputs, kWidth, kHeight, {});
+      const auto atOnce = std::count_if(drawn.pictures[0].distance.begin(), drawn.pictures[0].distance.end(),
+                                        [](float distance) { return distance < 1e-3f; });
+      EXPECT_EQ(atOnce, isInside ? kWidth * kHeight : 0) << axis;
+    }
+  }
 }
 
 TEST(Extraction, FlatVolumesHaveNoCells) {
