@@ -36,7 +36,8 @@ class Measured:
 
     @property
     def text(self) -> str:
-        if self.low == self.high:
+        # An interval without width is one, too: rounding decides whether made-up times have any.
+        if self.low == self.high and not self.is_interval:
             return number_text(self.value)
         low, high = number_text(self.low), number_text(self.high)
         return f"{number_text(self.value)} [{low}, {high}]" if self.is_interval else \
