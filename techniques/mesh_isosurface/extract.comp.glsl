@@ -1,7 +1,8 @@
 // Triangles of a block of cells, with vertices shared within it (after Liu et al. 2016, parallel marching blocks).
 // Compiled twice: with COUNT, which counts them, and without, which writes them where the sums of the counts say.
 // Together the invocations of a workgroup, which is one block, take its rows of voxels, then of edges, then of cells, an
-// invocation a row: bits instead of voxels wherever possible. The surface is drawn next.
+// invocation a row: bits instead of voxels wherever possible. Then each takes vertices, and then occupied cells, from
+// lists. The surface is drawn next.
 #version 460
 
 #include <mesh_isosurface/vertices.glsl>

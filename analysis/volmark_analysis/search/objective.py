@@ -36,7 +36,7 @@ class Measured:
 
     @property
     def text(self) -> str:
-        # An interval without width is one, too: rounding decides whether made-up times have any.
+        # An interval without width is one, too: of equal times, rounding alone decides whether it has any.
         if self.low == self.high and not self.is_interval:
             return number_text(self.value)
         low, high = number_text(self.low), number_text(self.high)

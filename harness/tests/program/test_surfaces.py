@@ -46,9 +46,9 @@ def test_pictures_are_near_the_reference(runs):
     for method, run in runs.items():
         assert run["pictures"]
         for picture in run["pictures"]:
-            assert picture["psnr_db"] > 25, (method, picture)
-            assert picture["depth_mean_voxels"] < 0.25, (method, picture)
-            assert picture["missed_share"] + picture["spurious_share"] < 0.04, (method, picture)
+            assert picture["psnr_db"] > 29, (method, picture)
+            assert picture["depth_mean_voxels"] < 0.15 and picture["depth_p995_voxels"] < 1.2, (method, picture)
+            assert picture["missed_share"] + picture["spurious_share"] < 0.03, (method, picture)
 
 
 def test_extraction_is_update_and_not_draw(runs):
